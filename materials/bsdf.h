@@ -1,0 +1,67 @@
+#pragma once
+
+#include "renderer/core/bands.h"
+#include "renderer/core/math.h"
+#include "renderer/core/params.h"
+#include "renderer/core/registry.h"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+
+namespace rapport {
+
+class TableBsdf;
+
+// The local frame is right-handed: x = weft (+u), y = warp (+v), z = normal of the face side.
+// `eye` and `light` are unit vectors that point away from the surface, towards where the path came
+// from and where the light is. A camera path needs f(light → eye)·|cosθ_light|; that is what
+// `eval` returns. All quantities are linear RGB.
+
+struct BsdfSample {
+    glm::vec3 light; ///< sampled direction
+    Rgb weight;      ///< f·|cosθ_light| / pdf
+    float pdf;       ///< [1/sr]; of scattering only, see `unscattered`
+};
+
+/// How light scatters where it meets a surface. Constant after construction.
+class Bsdf {
+  public:
+    virtual ~Bsdf() = default;
+
+    /// f·|cosθ_light| for both sides of the surface, without the unscattered beam.
+    virtual Rgb eval(const glm::vec3& eye, const glm::vec3& light) const = 0;
+    /// Density of `sample` over solid angle [1/sr]; integrates to 1 over the sphere (or to 0, if
+    /// nothing scatters from `eye`).
+    virtual float pdf(const glm::vec3& eye, const glm::vec3& light) const = 0;
+    /// A direction of density `pdf`; nothing if no light scatters. `choice` and `u` are uniform in
+    /// [0, 1).
+    virtual std::optional<BsdfSample> sample(const glm::vec3& eye, float choice,
+                                             const glm::vec2& u) const = 0;
+    /// Share of light that passes straight through without an event, from −eye to eye: a null
+    /// interaction, never part of the three above. Same in both directions of travel.
+    virtual Rgb unscattered(const glm::vec3& eye) const {
+        (void)eye;
+        return Rgb(0);
+    }
+    /// Share of the light from `eye` that is scattered, for the albedo image (an estimate will do).
+    virtual Rgb albedo(const glm::vec3& eye) const = 0;
+};
+
+/// What a material is made from.
+struct MaterialContext {
+    const Params& params;
+    std::filesystem::path base_dir; ///< file names are relative to it
+    /// A measured table by file name, `.bsdf` or a `.toml` measured on the way.
+    std::function<std::shared_ptr<const TableBsdf>(const std::filesystem::path&)> load_table;
+};
+
+using MaterialFactory = std::function<std::shared_ptr<const Bsdf>(const MaterialContext&)>;
+using MaterialRegistry = Registry<MaterialFactory>;
+/// A new material is one file with, at its end,
+///     const Registered<MaterialFactory> registered("name", make_name);
+/// Makes the material `name`, or throws a FileError that lists the names there are.
+std::shared_ptr<const Bsdf> make_material(const std::string& name, const MaterialContext& context);
+
+} // namespace rapport

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "materials/table/direction_mesh.h"
+#include "renderer/core/bands.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rapport {
+
+enum class Side : uint8_t { front = 0, back = 1 };
+
+/// A direction that light arrives from: θ from the normal of the side it arrives on, [0, π/2);
+/// φ from +x (weft) towards +y (warp), on both sides.
+struct IncidentDirection {
+    Side side = Side::front;
+    double theta = 0, phi = 0;
+};
+
+/// A cloth's measured BSDF. What is stored is intensity I = f·cosθo [1/sr], per unit of incident
+/// flux: bin means over a fixed mesh of exit directions, for single points of incidence.
+/// Index order: D incident directions × 2 (0 = reflected to the incident side, 1 = transmitted)
+/// × B bins of a hemisphere × bands.
+struct BsdfTable {
+    Bands bands;
+    DirectionMesh exits;
+    std::vector<IncidentDirection> incident;
+
+    /// The rectangular grid of incidence behind a full table: axes in radians (ascending; φ starts
+    /// at 0 and the circle is closed by wrapping), and for [side][θ][φ] the index into `incident`
+    /// (at θ = 0 all φ share one). Empty for a partial table.
+    std::vector<double> grid_theta, grid_phi;
+    std::vector<uint32_t> grid_index; ///< [2, T, P]; kAbsent where a side was not measured
+    static constexpr uint32_t kAbsent = ~0u;
+
+    std::vector<float> intensity;   ///< [D, 2, B, bands]
+    std::vector<float> unscattered; ///< [D, bands], share of incident flux that met no event
+    std::vector<float> absorbed;    ///< [D, bands]
+    std::vector<float> capped;      ///< [D, bands]
+    std::vector<float> accuracy;    ///< [D], ε
+    std::vector<uint64_t> paths;    ///< [D]
+
+    /// Everything that decides the result (cloth source and hash, seed, parameters, program
+    /// version), as text; never the time, the threads or a path.
+    std::map<std::string, std::string> metadata;
+
+    size_t directions() const { return incident.size(); }
+    bool partial() const { return grid_index.empty(); }
+    float& at(size_t direction, int block, size_t bin, size_t band);
+    float at(size_t direction, int block, size_t bin, size_t band) const;
+    /// Shares of the incident flux per band: Σ_b intensity·Ω over block 0 or 1.
+    std::vector<double> reflectance(size_t direction) const;
+    std::vector<double> transmittance(size_t direction) const;
+};
+
+/// Lays out a table's directions and sizes its arrays (zeros).
+BsdfTable make_full_table(const Bands& bands, bool front, bool back);
+BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> incident);
+
+/// Tensor-file container. Reading validates every field; a damaged file is a FileError, and no
+/// allocation is made before a size is checked against the file's.
+void write_table(const BsdfTable& table, const std::filesystem::path& path);
+BsdfTable read_table(const std::filesystem::path& path);
+
+} // namespace rapport

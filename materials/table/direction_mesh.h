@@ -1,0 +1,43 @@
+#pragma once
+
+#include "renderer/core/math.h"
+
+#include <vector>
+
+namespace rapport {
+
+/// A mesh of exit directions on one hemisphere: rings of equal Δθ, each cut into equal Δφ so that
+/// bins are nearly square; ring 0 touches the pole. Bin numbers run along φ within a ring, then
+/// outwards. θ is measured from the pole of the hemisphere the light leaves into, φ from +x
+/// towards +y on both sides, bins of a ring start at φ = 0.
+class DirectionMesh {
+  public:
+    /// `rings` rings of 90°/rings each.
+    explicit DirectionMesh(int rings = 18);
+
+    size_t bins() const { return solid_angle_.size(); }
+    int rings() const { return static_cast<int>(first_.size()) - 1; }
+    double solid_angle(size_t bin) const { return solid_angle_[bin]; } ///< [sr]
+    /// The bin of direction `w` of unit length, |w.z| being the cosine to the pole.
+    size_t bin(const glm::dvec3& w) const;
+    size_t bin(double theta, double phi) const;
+
+    size_t ring_first(int ring) const { return first_[ring]; }
+    size_t ring_bins(int ring) const { return first_[ring + 1] - first_[ring]; }
+    int ring_of(size_t bin) const;
+    double theta_low(int ring) const { return ring * ring_width_; }
+    double ring_width() const { return ring_width_; }
+    struct Bounds {
+        double theta_low, theta_high, phi_low, phi_high;
+    };
+    Bounds bounds(size_t bin) const;
+
+    bool operator==(const DirectionMesh&) const = default;
+
+  private:
+    double ring_width_;
+    std::vector<size_t> first_; ///< rings + 1
+    std::vector<double> solid_angle_;
+};
+
+} // namespace rapport

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "materials/table/bsdf_table.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace rapport {
+
+/// Evaluates and samples a full table by one interpolant: `eval`, `pdf` and `sample` agree with
+/// each other by construction. All of it belongs to the *eye* direction, which takes the table's
+/// incidence slot (reciprocity): eval(eye, light) = I(eye → light), so albedo and pdf are those of
+/// the direction the table was measured for. Directions are in the local frame of the cloth.
+class TableBsdf {
+  public:
+    /// FileError(`name` for the message) for a partial table, or one that lacks a side.
+    TableBsdf(BsdfTable table, const std::string& name);
+    ~TableBsdf();
+
+    Rgb eval(const glm::vec3& eye, const glm::vec3& light) const;
+    float pdf(const glm::vec3& eye, const glm::vec3& light) const;
+    struct Sample {
+        glm::vec3 light;
+        Rgb weight; ///< intensity / pdf
+        float pdf;
+    };
+    std::optional<Sample> sample(const glm::vec3& eye, float choice, const glm::vec2& u) const;
+    Rgb unscattered(const glm::vec3& eye) const;
+    Rgb albedo(const glm::vec3& eye) const;
+
+    const BsdfTable& table() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace rapport

@@ -1,0 +1,11 @@
+# Embree::Embree from Embree 4 or, as Debian 12 has it, 3.13. The sources tell them apart by header.
+find_package(embree 4 CONFIG QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 3 CONFIG QUIET)
+endif()
+if(embree_FOUND AND NOT TARGET Embree::Embree)
+  add_library(Embree::Embree INTERFACE IMPORTED)
+  target_link_libraries(Embree::Embree INTERFACE embree)
+endif()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(Embree REQUIRED_VARS embree_FOUND VERSION_VAR embree_VERSION)

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+namespace rapport {
+
+/// Calls `write` with a temporary name beside `target`, then renames it to `target`, so that the
+/// file appears whole or not at all; on an exception the temporary is removed. A folder that does
+/// not exist or cannot be written is a FileError.
+void write_atomically(const std::filesystem::path& target,
+                      const std::function<void(const std::filesystem::path& temporary)>& write);
+
+} // namespace rapport

@@ -1,0 +1,17 @@
+#include "renderer/core/error.h"
+
+#include <fmt/format.h>
+
+namespace rapport {
+
+FileError::FileError(std::string path, std::string place, std::string expected, std::string found)
+    : std::runtime_error(fmt::format("{}{}{}: expected {}, found {}", path,
+                                     place.empty() ? "" : ":", place, expected, found)),
+      path(std::move(path)), place(std::move(place)), expected(std::move(expected)),
+      found(std::move(found)) {}
+
+FileError::FileError(std::string path, int line, std::string expected, std::string found)
+    : FileError(std::move(path), line > 0 ? std::to_string(line) : std::string(),
+                std::move(expected), std::move(found)) {}
+
+} // namespace rapport

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "renderer/core/bands.h"
+#include "renderer/core/math.h"
+#include "renderer/core/params.h"
+#include "renderer/core/registry.h"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+
+namespace rapport {
+
+struct LightSample {
+    glm::vec3 direction; ///< unit, from the surface towards the light
+    float distance;      ///< infinity for lights at infinity
+    Rgb radiance;        ///< arriving
+    float pdf;           ///< [1/sr]; ignored when `delta`
+    bool delta;          ///< the direction has no density (distant light): no MIS
+};
+
+/// Something that shines. Constant after `prepare`.
+class Light {
+  public:
+    virtual ~Light() = default;
+    /// Told once what the scene spans, before rendering.
+    virtual void prepare(const glm::vec3& scene_centre, float scene_radius) {
+        (void)scene_centre, (void)scene_radius;
+    }
+    virtual std::optional<LightSample> sample(const glm::vec3& from, const glm::vec2& u) const = 0;
+    /// Radiance of a ray that leaves the scene in unit `direction`, and the density with which
+    /// `sample` picks it; zero for lights with a place.
+    virtual Rgb escaped(const glm::vec3& direction) const {
+        (void)direction;
+        return Rgb(0);
+    }
+    virtual float escaped_pdf(const glm::vec3& direction) const {
+        (void)direction;
+        return 0;
+    }
+    /// Emitted power, up to a common factor, by which lights are chosen.
+    virtual float power() const = 0;
+};
+
+struct LightContext {
+    const Params& params;
+    std::filesystem::path base_dir;
+    glm::mat4 to_world;
+};
+using LightFactory = std::function<std::shared_ptr<Light>(const LightContext&)>;
+using LightRegistry = Registry<LightFactory>;
+
+} // namespace rapport

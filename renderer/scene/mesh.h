@@ -1,0 +1,31 @@
+#pragma once
+
+#include "renderer/core/math.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace rapport {
+
+/// A polygon-free, ready-to-trace triangle mesh in world space. Per-vertex arrays other than
+/// positions are empty or as long as positions.
+struct TriangleMesh {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals; ///< unit shading normals, face side
+    std::vector<glm::vec2> uvs;
+    std::vector<glm::vec3> weft, warp; ///< ∂P/∂u and ∂P/∂v of the surface, not orthogonalised
+    std::vector<glm::uvec3> triangles; ///< counter-clockwise seen from the face side
+};
+
+/// A mesh as a file holds it: corners index positions and UVs apart, so that a UV seam does not
+/// cut the surface.
+struct IndexedMesh {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec2> uvs;             ///< v upwards
+    std::vector<glm::vec3> normals;         ///< per corner-vertex as in the file; may be empty
+    std::vector<glm::uvec3> position_index; ///< per triangle
+    std::vector<glm::uvec3> uv_index;       ///< per triangle; empty when there are no UVs
+};
+
+} // namespace rapport

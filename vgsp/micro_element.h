@@ -1,0 +1,35 @@
+#pragma once
+
+#include "renderer/kernel/fibres.h"
+#include "vgsp/cloth.h"
+
+namespace rapport {
+
+enum FibreKind : uint32_t { kWarpFibre = 0, kWeftFibre = 1 };
+
+/// The repeat of a cloth as explicit fibres, in µm: x = weft, y = warp, z = face; end 1 and pick 1
+/// lie at half a spacing from the origin; z = 0 is the cloth's middle.
+struct MicroElement {
+    kernel::FibreAssembly fibres; ///< chain kind = FibreKind
+
+    int repeats_x = 1, repeats_y = 1; ///< draft repeats per cell, more than one where twist asks
+    size_t segments = 0;
+    double thickness_um = 0;
+    double warp_cover = 0, weft_cover = 0, cover_factor = 0; ///< shares of area, [0, 1]
+    double overlap_fraction = 0; ///< share of sampled fibre surface that lies inside another fibre
+    double twist_rounding_warp = 0, twist_rounding_weft = 0; ///< relative change of twist
+    double crimp_warp = 0, crimp_weft = 0; ///< axis length over straight length − 1
+};
+
+/// Options for studies of the method; the defaults are what a cloth is measured with.
+struct MicroElementOptions {
+    double max_turn_degrees = 1; ///< largest turn of a fibre between two segments
+    bool dither = true;          ///< shift each fibre's joints along it at random
+    uint64_t seed = 0;
+};
+
+/// Builds the micro-element (the paper, section 3). FileError (at the cloth's path) where the
+/// cloth cannot exist: yarns too thick for the sett, fibres that do not fit their yarn.
+MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& options = {});
+
+} // namespace rapport
