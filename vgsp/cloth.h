@@ -8,20 +8,52 @@
 #include <string>
 #include <vector>
 
+// A cloth file is TOML 1.0. These are all its keys; any other is an error, and so is the lack of
+// one that has neither a default nor "optional" beside it.
+//
+//   key                  unit  value                   default   meaning
+//   name                       text                    the file  for messages and metadata
+//   draft                      text                    -         a .wif, relative to this file
+//   weave                      text                    -         see named_weave() in draft.h
+//   rows                       texts of 0 and 1        -         pick 1 first, 1 = warp up
+//                                                                (exactly one of these three)
+//   crimp_balance              [0, 1]                  0.5       warp's share of the crimp height
+//   bands.edges_nm       nm    2 or more, increasing   R, G, B   band b ends at edges b and b + 1
+//
+//   warp.ends_per_cm     1/cm  (0, 1000]                         sett of the warp
+//   weft.picks_per_cm    1/cm  (0, 1000]                         sett of the weft
+//
+//   In [warp] and in [weft], of the yarn:
+//   section                    "parallel", "twisted"             how its fibres lie
+//   fibres                     whole, 1 … 10 000                 number of fibres in the section
+//   width_um, height_um  µm    (0, 10 000]                       parallel: axes of the ellipse
+//   diameter_um          µm    (0, 10 000]                       twisted: of the circle
+//   twist_per_m          1/m   [−100 000, 100 000]               twisted: turns; + is Z, − is S
+//   flatten                    (0, 1]                  1         see YarnSpec
+//
+//   In [warp.fibre] and in [weft.fibre]:
+//   diameter_um          µm    (0, 1000]                         of the round fibre
+//   refractive_index           [1, 4]                            the same in all bands
+//   absorption_per_um    1/µm  0 or more               0         per band, or one for all bands
+//   color                      [0, 1)                  optional  per band, instead of absorption
+//   surface_absorption         [0, 1]                  0         see FibreSpec
+
 namespace rapport {
 
 /// The dielectric fibres of a yarn.
 struct FibreSpec {
     double diameter_um = 0;
     double refractive_index = 0;
-    /// Volume absorption per band [1/µm], Beer–Lambert. Exactly one of this and `color` is given;
+    /// Volume absorption per band [1/µm], Beer–Lambert. At most one of this and `color` is given;
     /// neither means clear fibres.
     std::optional<std::vector<double>> absorption_per_um;
-    /// The albedo (linear sRGB) that a cloth wholly of this yarn should have under diffuse light;
-    /// solved for absorption (colour_solver.h).
+    /// The albedo per band (of the default bands: linear sRGB) that a cloth wholly of this yarn
+    /// should have under diffuse light; solved for absorption (colour_solver.h).
     std::optional<std::vector<double>> color;
     /// Share of the light that each passage or reflection at a fibre's surface takes, [0, 1].
     double surface_absorption = 0;
+
+    bool operator==(const FibreSpec&) const = default;
 };
 
 enum class YarnSection {
@@ -39,12 +71,14 @@ struct YarnSpec {
     /// inverse, and the fibres' own sections stay round.
     double flatten = 1;
     FibreSpec fibre;
+
+    bool operator==(const YarnSpec&) const = default;
 };
 
 /// A woven cloth, as its file says it: the trade's units are kept.
 struct Cloth {
     std::string name;
-    Draft draft;
+    Draft draft;             ///< as it was given; weavable() trims and reduces it
     double ends_per_cm = 0;  ///< warp sett
     double picks_per_cm = 0; ///< weft sett
     /// Warp's share of the crimp: h_warp / (h_warp + h_weft), [0, 1].
@@ -52,18 +86,24 @@ struct Cloth {
     YarnSpec warp, weft;
     Bands bands;
 
-    /// Where it came from, for messages, and its text (with the draft's) for the table's metadata.
+    /// Where it came from, for messages, and cloth_text() for the table's metadata.
     std::filesystem::path path;
     std::string source;
 };
 
-/// Reads a cloth `.toml` (see the example in scenes/cloths/). A draft file is named relative to it.
-/// Unknown keys, units left out, and values outside their domain are FileErrors with the line.
-/// `draft_override` replaces the draft that the file names.
+/// Reads a cloth file. Unknown keys, missing ones, values of the wrong type or outside their
+/// domain, and a draft that cannot be woven are FileErrors with the line. `draft_override` replaces
+/// the draft that the file names.
 Cloth read_cloth(const std::filesystem::path& path,
                  const std::optional<std::filesystem::path>& draft_override = {});
 
 /// The built-in viscose cloth woven to `draft_path` (a bare `.wif` in place of a cloth).
 Cloth viscose_cloth(const std::filesystem::path& draft_path);
+
+/// The cloth as a cloth file that stands alone: keys in a fixed order, numbers to their last digit,
+/// the weave as the rows that are woven, so that whatever decides the interlacement, yarns or
+/// fibres changes the text, and comments, layout and paths do not. Reading it back gives the same
+/// text. FileError if the draft cannot be woven.
+std::string cloth_text(const Cloth& cloth);
 
 } // namespace rapport

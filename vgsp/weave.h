@@ -6,9 +6,10 @@
 
 namespace rapport {
 
-/// The draft as it can be woven: ends that are never threaded and picks that raise nothing are
-/// trimmed, the rest reduced to its smallest repeat (with its colours). Throws a FileError
-/// (`path` is for the message) if an end or pick never interlaces — an infinite float — naming it.
+/// The draft as it can be woven: ends that are on no shaft and picks that raise none are dropped
+/// (with a warning), the rest reduced to its smallest repeat along warp and weft, in which its
+/// colours repeat too. Throws a FileError (`path` is for the message) that names the first end or
+/// pick, counted from 1 in the draft as it was given, that never interlaces: an infinite float.
 Draft weavable(const Draft& draft, const std::string& path);
 
 } // namespace rapport
