@@ -14,10 +14,11 @@ struct MicroElement {
 
     int repeats_x = 1, repeats_y = 1; ///< draft repeats per cell, more than one where twist asks
     size_t segments = 0;
-    double thickness_um = 0;
-    double warp_cover = 0, weft_cover = 0, cover_factor = 0; ///< shares of area, [0, 1]
+    double thickness_um = 0;               ///< of the yarns' outlines
+    double warp_cover = 0, weft_cover = 0; ///< shares of area that the yarns' outlines cover
+    double cover_factor = 0;               ///< of both together
     double overlap_fraction = 0; ///< share of sampled fibre surface that lies inside another fibre
-    double twist_rounding_warp = 0, twist_rounding_weft = 0; ///< relative change of twist
+    double twist_rounding_warp = 0, twist_rounding_weft = 0; ///< relative; the largest of all yarns
     double crimp_warp = 0, crimp_weft = 0; ///< axis length over straight length − 1
 };
 

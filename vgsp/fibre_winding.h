@@ -1,0 +1,46 @@
+#pragma once
+
+#include "renderer/kernel/fibres.h"
+#include "vgsp/yarn_axis.h"
+#include "vgsp/yarn_section.h"
+
+#include <functional>
+
+namespace rapport {
+
+/// A yarn in the micro-element: its axis placed in space, and its section wound round it.
+struct PlacedYarn {
+    const YarnAxis* axis;
+    const SectionLayout* section;
+    glm::dvec3 origin;    ///< of the axis' coordinate `along`, at half height
+    glm::dvec3 direction; ///< unit, in the plane of the cloth
+    double twist;         ///< [rad/µm of axis], Z positive
+
+    /// The axis of the fibre at `position` of the section, turned by `phase`, at arc length `s` of
+    /// the yarn's axis. The section stands across the axis; in a twisted yarn, across the mean
+    /// direction of the axis over one yarn radius: else every fibre would kink by several degrees
+    /// where an arc ends and the curvature jumps. This shifts fibres along the yarn; the outline
+    /// changes in second order only (≤ 0.2 % of the radius).
+    glm::dvec3 fibre_point(const glm::dvec2& position, double phase, double s) const;
+};
+
+/// A smooth curve that closes: at(s + length) = at(s) + a period.
+struct ClosedCurve {
+    std::function<glm::dvec3(double)> at;
+    double length;        ///< of the parameter [µm]
+    double sampling_step; ///< of the parameter, in which the curve turns little
+    glm::dvec3 period;
+};
+
+struct JointSpacing {
+    double max_turn;   ///< between the directions of two successive segments [rad]
+    double max_length; ///< of a segment [µm]
+};
+
+/// Points of the curve in order, so that the closed chain through them keeps to `spacing`: at
+/// equal steps of turn ÷ max_turn + length ÷ max_length, dense in bends and sparse on floats.
+/// `dither` ∈ [0, 1) shifts them along by a share of a step.
+std::vector<glm::dvec3> place_joints(const ClosedCurve& curve, const JointSpacing& spacing,
+                                     double dither);
+
+} // namespace rapport
