@@ -61,7 +61,8 @@ using MaterialFactory = std::function<std::shared_ptr<const Bsdf>(const Material
 using MaterialRegistry = Registry<MaterialFactory>;
 /// A new material is one file with, at its end,
 ///     const Registered<MaterialFactory> registered("name", make_name);
-/// Makes the material `name`, or throws a FileError that lists the names there are.
+/// Makes the material `name`, or throws a FileError that lists the names there are. Parameters that
+/// neither the material nor anyone before has asked for are FileErrors too.
 std::shared_ptr<const Bsdf> make_material(const std::string& name, const MaterialContext& context);
 
 } // namespace rapport

@@ -54,14 +54,29 @@ struct BsdfTable {
     /// Shares of the incident flux per band: Σ_b intensity·Ω over block 0 or 1.
     std::vector<double> reflectance(size_t direction) const;
     std::vector<double> transmittance(size_t direction) const;
+    /// A table is as accurate as its worst direction; 0 for a table without directions.
+    float largest_accuracy() const;
 };
 
 /// Lays out a table's directions and sizes its arrays (zeros).
+///
+/// The grid of a full table: θ = 0°, 10°, …, 80°, 88° and φ every 15°, 217 directions a side. The
+/// time to measure is proportional to their number: accuracy ε takes about 1.15·B/ε² paths a
+/// direction (B bins on both hemispheres; 1.15 = E[w²]/E[w]² of the path weights of a light cloth),
+/// so both sides at ε = 0.3 take 9 million paths, a minute at 150 000 paths/s.
 BsdfTable make_full_table(const Bands& bands, bool front, bool back);
 BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> incident);
 
 /// Tensor-file container. Reading validates every field; a damaged file is a FileError, and no
 /// allocation is made before a size is checked against the file's.
+///
+/// The arrays bear the names of the members above (`intensity`, `unscattered`, `absorbed`,
+/// `capped`, `accuracy`, `paths`, `grid_theta`, `grid_phi`, `grid_index`), and besides them stand
+/// `incident_side` (0 front, 1 back), `incident_theta`, `incident_phi`, the mesh of exits as
+/// `ring_bins` and `solid_angle` [sr], `band_edges_nm` (absent for RGB), and as texts `band_names`
+/// (a JSON array), `metadata` (a JSON object) and `description`. Angles are in radians, as in the
+/// other tables of this container, so that they survive the round trip bit for bit.
+/// `grid_*` are absent from a partial table. Fields of other names are ignored.
 void write_table(const BsdfTable& table, const std::filesystem::path& path);
 BsdfTable read_table(const std::filesystem::path& path);
 

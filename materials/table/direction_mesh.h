@@ -10,9 +10,13 @@ namespace rapport {
 /// bins are nearly square; ring 0 touches the pole. Bin numbers run along φ within a ring, then
 /// outwards. θ is measured from the pole of the hemisphere the light leaves into, φ from +x
 /// towards +y on both sides, bins of a ring start at φ = 0.
+///
+/// A ring has a multiple of four bins, so that mirroring in a yarn direction or turning by 90° maps
+/// bins onto bins. Ring 0 too has four instead of one: across the pole there is a slope to tell.
 class DirectionMesh {
   public:
-    /// `rings` rings of 90°/rings each.
+    static constexpr int kMaxRings = 180;
+    /// `rings` rings of 90°/rings each; std::invalid_argument outside 1 … kMaxRings.
     explicit DirectionMesh(int rings = 18);
 
     size_t bins() const { return solid_angle_.size(); }
@@ -20,6 +24,7 @@ class DirectionMesh {
     double solid_angle(size_t bin) const { return solid_angle_[bin]; } ///< [sr]
     /// The bin of direction `w` of unit length, |w.z| being the cosine to the pole.
     size_t bin(const glm::dvec3& w) const;
+    /// θ beyond [0, π/2] counts as the nearest end; φ may be any angle.
     size_t bin(double theta, double phi) const;
 
     size_t ring_first(int ring) const { return first_[ring]; }

@@ -1,0 +1,64 @@
+#include "materials/bsdf.h"
+#include "materials/table/table_bsdf.h"
+
+#include <cmath>
+
+namespace rapport {
+namespace {
+
+/// A cloth by its measured table.
+///     "string filename"  a `.bsdf` table or a cloth `.toml`; required
+///     "float rotation"   turns the weave on the surface: degrees, counter-clockwise as seen from
+///                        the face, so that 90 lays the weft along +v; default 0
+class Cloth final : public Bsdf {
+  public:
+    Cloth(std::shared_ptr<const TableBsdf> table, float rotation)
+        : table_(std::move(table)), cosine_(std::cos(rotation)), sine_(std::sin(rotation)) {}
+
+    Rgb eval(const glm::vec3& eye, const glm::vec3& light) const override {
+        return table_->eval(to_weave(eye), to_weave(light));
+    }
+
+    float pdf(const glm::vec3& eye, const glm::vec3& light) const override {
+        return table_->pdf(to_weave(eye), to_weave(light));
+    }
+
+    std::optional<BsdfSample> sample(const glm::vec3& eye, float choice,
+                                     const glm::vec2& u) const override {
+        const auto sample = table_->sample(to_weave(eye), choice, u);
+        if (!sample)
+            return std::nullopt;
+        return BsdfSample{from_weave(sample->light), sample->weight, sample->pdf};
+    }
+
+    Rgb unscattered(const glm::vec3& eye) const override {
+        return table_->unscattered(to_weave(eye));
+    }
+
+    Rgb albedo(const glm::vec3& eye) const override { return table_->albedo(to_weave(eye)); }
+
+  private:
+    glm::vec3 to_weave(const glm::vec3& w) const {
+        return {cosine_ * w.x + sine_ * w.y, cosine_ * w.y - sine_ * w.x, w.z};
+    }
+    glm::vec3 from_weave(const glm::vec3& w) const {
+        return {cosine_ * w.x - sine_ * w.y, cosine_ * w.y + sine_ * w.x, w.z};
+    }
+
+    std::shared_ptr<const TableBsdf> table_;
+    float cosine_, sine_;
+};
+
+std::shared_ptr<const Bsdf> make_cloth(const MaterialContext& context) {
+    const std::string filename = context.params.get_string("filename", "");
+    if (filename.empty())
+        context.params.fail("filename", "\"string filename\" of a .bsdf or .toml", "none");
+    const float rotation = context.params.get_float("rotation", 0);
+    return std::make_shared<Cloth>(context.load_table(context.base_dir / filename),
+                                   radians(rotation));
+}
+
+const Registered<MaterialFactory> registered("cloth", make_cloth);
+
+} // namespace
+} // namespace rapport

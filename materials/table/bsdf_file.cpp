@@ -1,0 +1,299 @@
+#include "materials/table/bsdf_table.h"
+#include "renderer/core/error.h"
+#include "renderer/core/tensor_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+namespace rapport {
+namespace {
+
+using Type = TensorField::Type;
+using Shape = std::vector<uint64_t>;
+
+/// Light that is neither in a bin nor in one of the other shares may be this much: rounding of
+/// float sums, not a lost path.
+constexpr double kEnergyTolerance = 1e-3;
+constexpr double kSolidAngleTolerance = 1e-9; // relative; sin() may differ in its last digit
+
+template <class T> struct TypeOf;
+template <> struct TypeOf<uint8_t> { static constexpr Type value = Type::u8; };
+template <> struct TypeOf<uint32_t> { static constexpr Type value = Type::u32; };
+template <> struct TypeOf<uint64_t> { static constexpr Type value = Type::u64; };
+template <> struct TypeOf<float> { static constexpr Type value = Type::f32; };
+template <> struct TypeOf<double> { static constexpr Type value = Type::f64; };
+
+std::string describe(Type type, const Shape& shape) {
+    constexpr const char* kNames[] = {"?",   "u8",  "i8",  "u16", "i16", "u32",
+                                      "i32", "u64", "i64", "f16", "f32", "f64"};
+    const auto index = static_cast<size_t>(type);
+    return fmt::format("{}[{}]", index < std::size(kNames) ? kNames[index] : "?",
+                       fmt::join(shape, ", "));
+}
+
+/// Turns the fields of one file into a table, or says what is wrong with which of them.
+class Reader {
+  public:
+    explicit Reader(const std::filesystem::path& path)
+        : path_(path.string()), fields_(read_tensor_file(path)) {}
+
+    BsdfTable read() {
+        text("description");
+        read_bands();
+        read_metadata();
+        read_exits();
+        read_incident();
+        if (has("grid_theta") || has("grid_phi") || has("grid_index"))
+            read_grid();
+        read_shares();
+        return std::move(table_);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& name, const std::string& expected,
+                           const std::string& found) const {
+        throw FileError(path_, name, expected, found);
+    }
+
+    bool has(const std::string& name) const { return fields_.contains(name); }
+
+    const TensorField& field(const std::string& name, const std::string& expected) const {
+        const auto found = fields_.find(name);
+        if (found == fields_.end())
+            fail(name, expected, "no such field");
+        return found->second;
+    }
+
+    template <class T> std::vector<T> array(const std::string& name, const Shape& shape) const {
+        const std::string expected = describe(TypeOf<T>::value, shape);
+        const TensorField& stored = field(name, expected);
+        if (stored.type != TypeOf<T>::value || stored.shape != shape)
+            fail(name, expected, describe(stored.type, stored.shape));
+        return stored.values<T>();
+    }
+
+    /// An array of one dimension whose length the file decides.
+    template <class T> std::vector<T> list(const std::string& name) const {
+        const std::string expected = "a non-empty list of " + describe(TypeOf<T>::value, {});
+        const TensorField& stored = field(name, expected);
+        if (stored.type != TypeOf<T>::value || stored.shape.size() != 1 || stored.shape[0] == 0)
+            fail(name, expected, describe(stored.type, stored.shape));
+        return stored.values<T>();
+    }
+
+    std::string text(const std::string& name) const {
+        const TensorField& stored = field(name, "text");
+        if (stored.type != Type::u8 || stored.shape.size() != 1)
+            fail(name, "text", describe(stored.type, stored.shape));
+        return stored.text();
+    }
+
+    nlohmann::json json(const std::string& name) const {
+        auto value = nlohmann::json::parse(text(name), nullptr, false);
+        if (value.is_discarded())
+            fail(name, "JSON", "text that is none");
+        return value;
+    }
+
+    void read_bands() {
+        const nlohmann::json names = json("band_names");
+        const auto is_string = [](const nlohmann::json& v) { return v.is_string(); };
+        if (!names.is_array() || names.empty() || !std::ranges::all_of(names, is_string))
+            fail("band_names", "a JSON array of names", names.type_name());
+        table_.bands.names = names.get<std::vector<std::string>>();
+        if (!has("band_edges_nm")) {
+            if (table_.bands != Bands{})
+                fail("band_names", "R, G, B where there is no band_edges_nm",
+                     fmt::format("{}", fmt::join(table_.bands.names, ", ")));
+            return;
+        }
+        table_.bands.edges_nm = array<double>("band_edges_nm", {names.size() + 1});
+        check_axis("band_edges_nm", table_.bands.edges_nm, 0, HUGE_VAL);
+    }
+
+    void read_metadata() {
+        const nlohmann::json metadata = json("metadata");
+        if (!metadata.is_object())
+            fail("metadata", "a JSON object", metadata.type_name());
+        for (const auto& [key, value] : metadata.items()) {
+            if (!value.is_string())
+                fail("metadata." + key, "text", value.type_name());
+            table_.metadata[key] = value.get<std::string>();
+        }
+    }
+
+    void read_exits() {
+        const auto ring_bins = list<uint32_t>("ring_bins");
+        if (ring_bins.size() > DirectionMesh::kMaxRings)
+            fail("ring_bins", fmt::format("at most {} rings", DirectionMesh::kMaxRings),
+                 std::to_string(ring_bins.size()));
+        table_.exits = DirectionMesh(static_cast<int>(ring_bins.size()));
+        const DirectionMesh& mesh = table_.exits;
+        for (int ring = 0; ring < mesh.rings(); ++ring)
+            if (ring_bins[ring] != mesh.ring_bins(ring))
+                fail(fmt::format("ring_bins[{}]", ring), std::to_string(mesh.ring_bins(ring)),
+                     std::to_string(ring_bins[ring]));
+        const auto solid_angle = array<double>("solid_angle", {mesh.bins()});
+        for (size_t bin = 0; bin < mesh.bins(); ++bin)
+            if (!(std::abs(solid_angle[bin] / mesh.solid_angle(bin) - 1) <= kSolidAngleTolerance))
+                fail(fmt::format("solid_angle[{}]", bin), fmt::format("{}", mesh.solid_angle(bin)),
+                     fmt::format("{}", solid_angle[bin]));
+    }
+
+    void read_incident() {
+        const auto theta = list<double>("incident_theta");
+        const auto phi = array<double>("incident_phi", {theta.size()});
+        const auto side = array<uint8_t>("incident_side", {theta.size()});
+        for (size_t i = 0; i < theta.size(); ++i) {
+            if (!(theta[i] >= 0 && theta[i] < kPi / 2))
+                fail(fmt::format("incident_theta[{}]", i), "0 <= θ < π/2",
+                     fmt::format("{}", theta[i]));
+            if (!std::isfinite(phi[i]))
+                fail(fmt::format("incident_phi[{}]", i), "a finite angle",
+                     fmt::format("{}", phi[i]));
+            if (side[i] > 1)
+                fail(fmt::format("incident_side[{}]", i), "0 (front) or 1 (back)",
+                     std::to_string(side[i]));
+            table_.incident.push_back({static_cast<Side>(side[i]), theta[i], phi[i]});
+        }
+    }
+
+    void check_axis(const std::string& name, const std::vector<double>& axis, double low,
+                    double high) const {
+        double previous = -HUGE_VAL;
+        for (size_t i = 0; i < axis.size(); previous = axis[i++])
+            if (!(axis[i] > previous && axis[i] >= low && axis[i] < high))
+                fail(fmt::format("{}[{}]", name, i),
+                     fmt::format("ascending numbers, {} <= x < {}", low, high),
+                     fmt::format("{}", axis[i]));
+    }
+
+    void read_grid() {
+        table_.grid_theta = list<double>("grid_theta");
+        table_.grid_phi = list<double>("grid_phi");
+        check_axis("grid_theta", table_.grid_theta, 0, kPi / 2);
+        check_axis("grid_phi", table_.grid_phi, 0, 2 * kPi);
+        if (table_.grid_phi[0] != 0)
+            fail("grid_phi[0]", "0", fmt::format("{}", table_.grid_phi[0]));
+        const size_t thetas = table_.grid_theta.size(), phis = table_.grid_phi.size();
+        table_.grid_index = array<uint32_t>("grid_index", {2, thetas, phis});
+        for (size_t i = 0; i < table_.grid_index.size(); ++i)
+            check_grid_index(i, thetas * phis);
+        if (std::ranges::count(table_.grid_index, BsdfTable::kAbsent) ==
+            static_cast<ptrdiff_t>(table_.grid_index.size()))
+            fail("grid_index", "at least one measured side", "none");
+    }
+
+    void check_grid_index(size_t i, size_t side_size) const {
+        const uint32_t index = table_.grid_index[i];
+        const std::string place = fmt::format("grid_index[{}]", i);
+        const size_t side = i / side_size;
+        const bool absent = table_.grid_index[side * side_size] == BsdfTable::kAbsent;
+        if ((index == BsdfTable::kAbsent) != absent)
+            fail(place, "a side that is measured wholly or not at all", std::to_string(index));
+        if (absent)
+            return;
+        if (index >= table_.directions())
+            fail(place, fmt::format("less than {}", table_.directions()), std::to_string(index));
+        const double theta = table_.grid_theta[i % side_size / table_.grid_phi.size()];
+        const double phi = table_.grid_phi[i % table_.grid_phi.size()];
+        const IncidentDirection& incident = table_.incident[index];
+        if (incident.side != static_cast<Side>(side) || incident.theta != theta ||
+            (incident.phi != phi && theta != 0))
+            fail(place, fmt::format("a direction on side {} at θ = {}, φ = {}", side, theta, phi),
+                 fmt::format("side {}, θ = {}, φ = {}", static_cast<int>(incident.side),
+                             incident.theta, incident.phi));
+    }
+
+    std::vector<float> shares(const std::string& name, const Shape& shape) const {
+        std::vector<float> values = array<float>(name, shape);
+        for (size_t i = 0; i < values.size(); ++i)
+            if (!(values[i] >= 0 && std::isfinite(values[i])))
+                fail(fmt::format("{}[{}]", name, i), "a finite number >= 0",
+                     fmt::format("{}", values[i]));
+        return values;
+    }
+
+    void read_shares() {
+        const size_t directions = table_.directions(), bands = table_.bands.count();
+        table_.intensity = shares("intensity", {directions, 2, table_.exits.bins(), bands});
+        table_.unscattered = shares("unscattered", {directions, bands});
+        table_.absorbed = shares("absorbed", {directions, bands});
+        table_.capped = shares("capped", {directions, bands});
+        table_.accuracy = shares("accuracy", {directions});
+        table_.paths = array<uint64_t>("paths", {directions});
+        for (size_t d = 0; d < directions; ++d) {
+            const auto reflected = table_.reflectance(d), transmitted = table_.transmittance(d);
+            for (size_t band = 0; band < bands; ++band) {
+                const size_t i = d * bands + band;
+                const double sum = reflected[band] + transmitted[band] + table_.unscattered[i] +
+                                   table_.absorbed[i] + table_.capped[i];
+                if (!(std::abs(sum - 1) <= kEnergyTolerance))
+                    fail(fmt::format("intensity[{}]", d),
+                         fmt::format("shares of band {} that sum to 1", table_.bands.names[band]),
+                         fmt::format("{:.6g}", sum));
+            }
+        }
+    }
+
+    std::string path_;
+    TensorFile fields_;
+    BsdfTable table_;
+};
+
+} // namespace
+
+void write_table(const BsdfTable& table, const std::filesystem::path& path) {
+    const DirectionMesh& mesh = table.exits;
+    const uint64_t directions = table.directions(), bands = table.bands.count();
+    std::vector<uint8_t> side;
+    std::vector<double> theta, phi, solid_angle;
+    std::vector<uint32_t> ring_bins;
+    for (const IncidentDirection& incident : table.incident) {
+        side.push_back(static_cast<uint8_t>(incident.side));
+        theta.push_back(incident.theta);
+        phi.push_back(incident.phi);
+    }
+    for (int ring = 0; ring < mesh.rings(); ++ring)
+        ring_bins.push_back(static_cast<uint32_t>(mesh.ring_bins(ring)));
+    for (size_t bin = 0; bin < mesh.bins(); ++bin)
+        solid_angle.push_back(mesh.solid_angle(bin));
+
+    const auto json_text = [](const nlohmann::json& value) {
+        return TensorField::text(
+            value.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+    };
+    TensorFile fields;
+    fields["description"] = TensorField::text("Rapport cloth BSDF table");
+    fields["metadata"] = json_text(table.metadata);
+    fields["band_names"] = json_text(table.bands.names);
+    if (!table.bands.is_rgb())
+        fields["band_edges_nm"] = TensorField::of<double>({bands + 1}, table.bands.edges_nm);
+    fields["ring_bins"] = TensorField::of<uint32_t>({ring_bins.size()}, ring_bins);
+    fields["solid_angle"] = TensorField::of<double>({mesh.bins()}, solid_angle);
+    fields["incident_side"] = TensorField::of<uint8_t>({directions}, side);
+    fields["incident_theta"] = TensorField::of<double>({directions}, theta);
+    fields["incident_phi"] = TensorField::of<double>({directions}, phi);
+    if (!table.partial()) {
+        const uint64_t thetas = table.grid_theta.size(), phis = table.grid_phi.size();
+        fields["grid_theta"] = TensorField::of<double>({thetas}, table.grid_theta);
+        fields["grid_phi"] = TensorField::of<double>({phis}, table.grid_phi);
+        fields["grid_index"] = TensorField::of<uint32_t>({2, thetas, phis}, table.grid_index);
+    }
+    fields["intensity"] =
+        TensorField::of<float>({directions, 2, mesh.bins(), bands}, table.intensity);
+    fields["unscattered"] = TensorField::of<float>({directions, bands}, table.unscattered);
+    fields["absorbed"] = TensorField::of<float>({directions, bands}, table.absorbed);
+    fields["capped"] = TensorField::of<float>({directions, bands}, table.capped);
+    fields["accuracy"] = TensorField::of<float>({directions}, table.accuracy);
+    fields["paths"] = TensorField::of<uint64_t>({directions}, table.paths);
+    write_tensor_file(fields, path);
+}
+
+BsdfTable read_table(const std::filesystem::path& path) { return Reader(path).read(); }
+
+} // namespace rapport

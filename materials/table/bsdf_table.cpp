@@ -1,0 +1,92 @@
+#include "materials/table/bsdf_table.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace rapport {
+namespace {
+
+constexpr int kGridThetaDegrees[] = {0, 10, 20, 30, 40, 50, 60, 70, 80, 88};
+constexpr int kGridPhiStepDegrees = 15;
+
+void size_arrays(BsdfTable& table) {
+    const size_t directions = table.directions();
+    const size_t bands = table.bands.count();
+    table.intensity.assign(directions * 2 * table.exits.bins() * bands, 0);
+    table.unscattered.assign(directions * bands, 0);
+    table.absorbed.assign(directions * bands, 0);
+    table.capped.assign(directions * bands, 0);
+    table.accuracy.assign(directions, 0);
+    table.paths.assign(directions, 0);
+}
+
+std::vector<double> flux(const BsdfTable& table, size_t direction, int block) {
+    std::vector<double> sum(table.bands.count());
+    for (size_t bin = 0; bin < table.exits.bins(); ++bin)
+        for (size_t band = 0; band < sum.size(); ++band)
+            sum[band] += table.at(direction, block, bin, band) * table.exits.solid_angle(bin);
+    return sum;
+}
+
+size_t intensity_index(const BsdfTable& table, size_t direction, int block, size_t bin,
+                       size_t band) {
+    return ((direction * 2 + block) * table.exits.bins() + bin) * table.bands.count() + band;
+}
+
+} // namespace
+
+float& BsdfTable::at(size_t direction, int block, size_t bin, size_t band) {
+    return intensity[intensity_index(*this, direction, block, bin, band)];
+}
+
+float BsdfTable::at(size_t direction, int block, size_t bin, size_t band) const {
+    return intensity[intensity_index(*this, direction, block, bin, band)];
+}
+
+std::vector<double> BsdfTable::reflectance(size_t direction) const {
+    return flux(*this, direction, 0);
+}
+
+std::vector<double> BsdfTable::transmittance(size_t direction) const {
+    return flux(*this, direction, 1);
+}
+
+float BsdfTable::largest_accuracy() const {
+    return accuracy.empty() ? 0 : *std::ranges::max_element(accuracy);
+}
+
+BsdfTable make_full_table(const Bands& bands, bool front, bool back) {
+    if (!front && !back)
+        throw std::invalid_argument("make_full_table: no side to measure");
+    BsdfTable table;
+    table.bands = bands;
+    for (const int theta : kGridThetaDegrees)
+        table.grid_theta.push_back(radians(static_cast<double>(theta)));
+    for (int phi = 0; phi < 360; phi += kGridPhiStepDegrees)
+        table.grid_phi.push_back(radians(static_cast<double>(phi)));
+
+    for (const Side side : {Side::front, Side::back}) {
+        const bool measured = side == Side::front ? front : back;
+        for (const double theta : table.grid_theta)
+            for (const double phi : table.grid_phi) {
+                const bool shared = theta == 0 && phi > 0;
+                if (measured && !shared)
+                    table.incident.push_back({side, theta, phi});
+                table.grid_index.push_back(measured
+                                               ? static_cast<uint32_t>(table.incident.size() - 1)
+                                               : BsdfTable::kAbsent);
+            }
+    }
+    size_arrays(table);
+    return table;
+}
+
+BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> incident) {
+    BsdfTable table;
+    table.bands = bands;
+    table.incident = std::move(incident);
+    size_arrays(table);
+    return table;
+}
+
+} // namespace rapport

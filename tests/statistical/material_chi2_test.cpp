@@ -1,0 +1,161 @@
+#include "materials/bsdf.h"
+#include "materials/table/table_bsdf.h"
+#include "renderer/core/rng.h"
+#include "tests/support/long_run.h"
+#include "tests/support/statistics.h"
+#include "tests/support/synthetic_tables.h"
+
+#include <gtest/gtest.h>
+#include <vector>
+
+// Every registered material: do the directions it samples have the density it claims, is that a
+// density, and do the weights carry its albedo?
+
+namespace rapport {
+namespace {
+
+constexpr double kSignificance = 0.01; // of a false alarm anywhere in this file
+constexpr int kCosines = 60, kPhis = 64, kCells = kCosines * kPhis;
+constexpr int kSubdivisions = 8; // of a cell, for integrals
+
+struct Case {
+    std::string name;
+    std::shared_ptr<const Bsdf> material;
+    std::string eye_name;
+    glm::vec3 eye;
+};
+
+std::shared_ptr<const Bsdf> make(const std::string& name) {
+    Params params("test.pbrt", "Material", 1);
+    if (name == "diffuse")
+        params.add(
+            {.type = "rgb", .name = "reflectance", .numbers = {0.8, 0.5, 0.1}, .strings = {}});
+    if (name == "cloth") {
+        params.add({.type = "string", .name = "filename", .numbers = {}, .strings = {"satin"}});
+        params.add({.type = "float", .name = "rotation", .numbers = {25}, .strings = {}});
+    }
+    return make_material(name, {params, "", [](const std::filesystem::path&) {
+                                    static const auto table = std::make_shared<const TableBsdf>(
+                                        tests::synthetic_table(tests::satin_intensity, 0.05), "");
+                                    return table;
+                                }});
+}
+
+std::vector<Case> cases() {
+    std::vector<Case> all;
+    for (const std::string& name : MaterialRegistry::instance().names()) {
+        const auto material = make(name);
+        for (const auto& [theta, phi] :
+             {std::pair(0.0, 0.0), {25.0, 71.0}, {56.0, 190.0}, {84.0, 311.0}, {89.9, 45.0}})
+            for (const int side : {1, -1}) {
+                glm::vec3 eye(spherical_direction(radians(theta), radians(phi)));
+                eye.z *= static_cast<float>(side);
+                all.push_back({name, material,
+                               name + (side > 0 ? " front " : " back ") + std::to_string(theta),
+                               eye});
+            }
+    }
+    return all;
+}
+
+/// Integral over each cell of the sphere (equal in cosθ and φ) of f, by midpoints.
+template <class F> std::vector<double> integrate_cells(const F& f) {
+    std::vector<double> cells(kCells);
+    const int cosines = kCosines * kSubdivisions, phis = kPhis * kSubdivisions;
+    for (int i = 0; i < cosines; ++i)
+        for (int j = 0; j < phis; ++j) {
+            const double cosine = 2 * (i + 0.5) / cosines - 1;
+            const glm::vec3 w(spherical_direction(std::acos(cosine), 2 * kPi * (j + 0.5) / phis));
+            cells[i / kSubdivisions * kPhis + j / kSubdivisions] += f(w) * 4 * kPi / cosines / phis;
+        }
+    return cells;
+}
+
+size_t cell_of(const glm::vec3& w) {
+    const int i = std::clamp(static_cast<int>((w.z + 1) / 2 * kCosines), 0, kCosines - 1);
+    const int j = std::min(static_cast<int>(azimuth(w) / (2 * kPi) * kPhis), kPhis - 1);
+    return static_cast<size_t>(i * kPhis + j);
+}
+
+TEST(MaterialChi2, SamplesHaveTheirDensity) {
+    const std::vector<Case> all = cases();
+    const double significance = tests::sidak(kSignificance, static_cast<int>(all.size()));
+    const int samples = tests::long_run() ? 4000000 : 300000;
+    for (size_t c = 0; c < all.size(); ++c) {
+        const auto& [name, material, eye_name, eye] = all[c];
+        SCOPED_TRACE(eye_name);
+        std::vector<double> expected =
+            integrate_cells([&](const glm::vec3& w) { return material->pdf(eye, w); });
+        double integral = 0;
+        for (double& cell : expected) {
+            integral += cell;
+            cell *= samples;
+        }
+        EXPECT_NEAR(integral, 1, 2e-3);
+
+        std::vector<double> observed(kCells);
+        int disagreements = 0; // where rounding moves a direction over a step of the density
+        CounterRng rng(1, Purpose::test, c, 0);
+        for (int i = 0; i < samples; ++i) {
+            const auto sample = material->sample(eye, rng.uniform_float(),
+                                                 {rng.uniform_float(), rng.uniform_float()});
+            ASSERT_TRUE(sample);
+            ASSERT_GT(sample->pdf, 0);
+            const float pdf = material->pdf(eye, sample->light);
+            disagreements += std::abs(sample->pdf - pdf) > 1e-3f * pdf;
+            observed[cell_of(sample->light)] += 1;
+        }
+        EXPECT_LE(disagreements, samples / 10000);
+        const auto result = tests::chi_square_test(observed, expected);
+        EXPECT_FALSE(result.impossible);
+        EXPECT_GT(result.degrees, 100);
+        EXPECT_GT(result.p_value, significance)
+            << "χ² " << result.statistic << " of " << result.degrees << " degrees";
+
+        // The wrong twin: a density with a tenth of it spread evenly over the sphere.
+        for (double& cell : expected)
+            cell = 0.9 * cell + 0.1 * samples / kCells;
+        EXPECT_LT(tests::chi_square_test(observed, expected).p_value, significance);
+    }
+}
+
+TEST(MaterialChi2, WeightsAndIntegralsAreTheAlbedo) {
+    // The furnace: under even light of radiance 1 a surface shows its albedo.
+    const std::vector<Case> all = cases();
+    const double significance = tests::sidak(kSignificance, 3 * static_cast<int>(all.size()));
+    const int samples = tests::long_run() ? 1000000 : 50000;
+    for (size_t c = 0; c < all.size(); ++c) {
+        const auto& [name, material, eye_name, eye] = all[c];
+        SCOPED_TRACE(eye_name);
+        const Rgb albedo = material->albedo(eye);
+        CounterRng rng(2, Purpose::test, c, 0);
+        tests::RunningMoments weight[3];
+        int disagreements = 0;
+        for (int i = 0; i < samples; ++i) {
+            const auto sample = material->sample(eye, rng.uniform_float(),
+                                                 {rng.uniform_float(), rng.uniform_float()});
+            ASSERT_TRUE(sample);
+            const Rgb value = material->eval(eye, sample->light);
+            const Rgb difference = glm::abs(sample->weight * sample->pdf - value);
+            disagreements += glm::any(glm::greaterThan(difference, 1e-3f * value));
+            for (int channel = 0; channel < 3; ++channel)
+                weight[channel].add(sample->weight[channel]);
+        }
+        EXPECT_LE(disagreements, samples / 10000);
+        for (int channel = 0; channel < 3; ++channel) {
+            // Besides noise, the rounding of float sums.
+            const double error = std::hypot(weight[channel].standard_error(), 1e-6);
+            const double z = (weight[channel].mean() - albedo[channel]) / error;
+            EXPECT_GT(tests::normal_two_sided_p(z), significance) << "z = " << z;
+
+            double integral = 0;
+            for (const double cell : integrate_cells(
+                     [&](const glm::vec3& w) { return material->eval(eye, w)[channel]; }))
+                integral += cell;
+            EXPECT_NEAR(integral, albedo[channel], 2e-3 * albedo[channel] + 1e-6);
+        }
+    }
+}
+
+} // namespace
+} // namespace rapport

@@ -1,0 +1,97 @@
+#include "tests/support/synthetic_tables.h"
+
+#include <cmath>
+
+namespace rapport::tests {
+namespace {
+
+/// Midpoints of 3 × 3 equal solid angles of each bin, on the hemisphere of +z.
+constexpr int kSteps = 3;
+std::vector<glm::dvec3> places_in_bins(const DirectionMesh& mesh) {
+    std::vector<glm::dvec3> places;
+    for (size_t bin = 0; bin < mesh.bins(); ++bin) {
+        const DirectionMesh::Bounds bounds = mesh.bounds(bin);
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j) {
+                const double cosine = std::lerp(std::cos(bounds.theta_low),
+                                                std::cos(bounds.theta_high), (i + 0.5) / kSteps);
+                const double phi = std::lerp(bounds.phi_low, bounds.phi_high, (j + 0.5) / kSteps);
+                places.push_back(spherical_direction(std::acos(cosine), phi));
+            }
+    }
+    return places;
+}
+
+} // namespace
+
+void fill_table(BsdfTable& table, const Intensity& intensity, double unscattered) {
+    const size_t bands = table.bands.count();
+    const std::vector<glm::dvec3> places = places_in_bins(table.exits);
+    for (size_t d = 0; d < table.directions(); ++d) {
+        const IncidentDirection& from = table.incident[d];
+        for (int block = 0; block < 2; ++block)
+            for (size_t bin = 0; bin < table.exits.bins(); ++bin)
+                for (size_t band = 0; band < bands; ++band) {
+                    double sum = 0;
+                    for (size_t i = bin * square(kSteps); i < (bin + 1) * square(kSteps); ++i) {
+                        glm::dvec3 out = places[i];
+                        if ((from.side == Side::front) != (block == 0))
+                            out.z = -out.z;
+                        sum += intensity(from, out, band);
+                    }
+                    table.at(d, block, bin, band) = static_cast<float>(sum / square(kSteps));
+                }
+        const auto reflected = table.reflectance(d), transmitted = table.transmittance(d);
+        for (size_t band = 0; band < bands; ++band) {
+            table.unscattered[d * bands + band] = static_cast<float>(unscattered);
+            table.absorbed[d * bands + band] =
+                static_cast<float>(1 - unscattered - reflected[band] - transmitted[band]);
+        }
+        table.accuracy[d] = 0.25f;
+        table.paths[d] = 1000 + d;
+    }
+    table.metadata = {{"cloth", "synthetic"}, {"seed", "0"}};
+}
+
+BsdfTable synthetic_table(const Intensity& intensity, double unscattered) {
+    BsdfTable table = make_full_table(Bands{}, true, true);
+    fill_table(table, intensity, unscattered);
+    return table;
+}
+
+BsdfTable small_synthetic_table(const Intensity& intensity, double unscattered) {
+    const std::vector<double> thetas = {0, 0.6, 1.4}, phis = {0, kPi / 2, kPi, 3 * kPi / 2};
+    std::vector<IncidentDirection> incident;
+    std::vector<uint32_t> grid_index;
+    for (const Side side : {Side::front, Side::back})
+        for (const double theta : thetas)
+            for (const double phi : phis) {
+                if (theta > 0 || phi == 0)
+                    incident.push_back({side, theta, phi});
+                grid_index.push_back(static_cast<uint32_t>(incident.size() - 1));
+            }
+    BsdfTable table = make_partial_table(Bands{}, incident);
+    table.grid_theta = thetas;
+    table.grid_phi = phis;
+    table.grid_index = grid_index;
+    table.exits = DirectionMesh(3);
+    table.intensity.resize(table.directions() * 2 * table.exits.bins() * table.bands.count());
+    fill_table(table, intensity, unscattered);
+    return table;
+}
+
+double satin_intensity(const IncidentDirection& from, const glm::dvec3& out, size_t band) {
+    constexpr double kDiffuse[] = {0.45, 0.2, 0.1}, kTransmitted[] = {0.2, 0.1, 0.05};
+    const bool front = from.side == Side::front;
+    const bool reflected = (out.z > 0) == front;
+    const double cosine = std::cos(from.theta);
+    if (!reflected)
+        return (front ? 1.0 : 1.2) * kTransmitted[band] / kPi * std::abs(out.z) * (0.5 + cosine);
+    const glm::dvec3 in = spherical_direction(from.theta, from.phi);
+    const double across = (in.x + out.x) / (front ? 0.4 : 0.25);
+    const double along = (in.y + out.y) / 0.25;
+    const double highlight = std::exp(-square(across) - square(along));
+    return (kDiffuse[band] / kPi * std::abs(out.z) + 0.6 * highlight) * (0.4 + 0.6 * cosine);
+}
+
+} // namespace rapport::tests

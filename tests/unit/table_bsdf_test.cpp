@@ -1,0 +1,355 @@
+#include "materials/table/table_bsdf.h"
+
+#include "materials/table/bin_reconstruction.h"
+#include "renderer/core/error.h"
+#include "renderer/core/rng.h"
+#include "tests/support/synthetic_tables.h"
+
+#include <functional>
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace rapport {
+namespace {
+
+using tests::satin_intensity;
+
+glm::vec3 direction(double theta_degrees, double phi_degrees, Side side = Side::front) {
+    const glm::dvec3 w = spherical_direction(radians(theta_degrees), radians(phi_degrees));
+    return {w.x, w.y, side == Side::front ? w.z : -w.z};
+}
+
+const TableBsdf& satin() {
+    static const TableBsdf bsdf(tests::synthetic_table(satin_intensity, 0.05), "satin.bsdf");
+    return bsdf;
+}
+
+/// A direction uniform over the sphere.
+glm::vec3 uniform_direction(CounterRng& rng) {
+    return spherical_direction<float>(std::acos(1 - 2 * rng.uniform_float()),
+                                      static_cast<float>(2 * kPi) * rng.uniform_float());
+}
+
+/// ∫ f over a bin of the front (or back) hemisphere, by a midpoint rule in cosθ and φ.
+glm::dvec3 integrate_bin(const DirectionMesh& mesh, size_t bin, Side side,
+                         const std::function<Rgb(const glm::vec3&)>& f) {
+    constexpr int kSteps = 6;
+    const DirectionMesh::Bounds bounds = mesh.bounds(bin);
+    glm::dvec3 sum(0);
+    for (int i = 0; i < kSteps; ++i)
+        for (int j = 0; j < kSteps; ++j) {
+            const double cosine = std::lerp(std::cos(bounds.theta_low), std::cos(bounds.theta_high),
+                                            (i + 0.5) / kSteps);
+            const double phi = std::lerp(bounds.phi_low, bounds.phi_high, (j + 0.5) / kSteps);
+            sum += glm::dvec3(f(direction(degrees(std::acos(cosine)), degrees(phi), side)));
+        }
+    return sum * (mesh.solid_angle(bin) / square(kSteps));
+}
+
+/// Eyes on both sides: on nodes, between them, at the pole, and beyond the last node.
+std::vector<glm::vec3> eyes() {
+    std::vector<glm::vec3> all;
+    for (const Side side : {Side::front, Side::back})
+        for (const auto& [theta, phi] :
+             {std::pair(0.0, 0.0), {20.0, 45.0}, {33.0, 127.0}, {64.0, 352.0}, {89.5, 200.0}})
+            all.push_back(direction(theta, phi, side));
+    return all;
+}
+
+TEST(BinReconstruction, KeepsMeansAndStaysPositive) {
+    const DirectionMesh mesh(9);
+    CounterRng rng(3, Purpose::test, 0, 0);
+    std::vector<Rgb> means; // noise with empty bins: the steepest slopes there are
+    for (size_t bin = 0; bin < mesh.bins(); ++bin)
+        means.emplace_back(rng.uniform_float(), rng.bits() % 3 ? 0 : 1, rng.bits() % 2 ? 0 : 5);
+    const std::vector<BinPlane> planes = reconstruct(mesh, means);
+    ASSERT_EQ(planes.size(), mesh.bins());
+    for (uint32_t bin = 0; bin < mesh.bins(); ++bin) {
+        EXPECT_EQ(planes[bin].at({bin, 0, 0}), means[bin]);
+        for (const float xi : {-1.0f, 1.0f})
+            for (const float eta : {-1.0f, 1.0f})
+                for (int channel = 0; channel < 3; ++channel)
+                    EXPECT_GE(planes[bin].at({bin, xi, eta})[channel], -1e-6f);
+    }
+}
+
+TEST(BinReconstruction, FollowsASmoothLobe) {
+    // A lobe of 20° half-width at half maximum, astride the rings; error against piecewise
+    // constant.
+    const DirectionMesh mesh;
+    const glm::vec3 centre = direction(37, 20);
+    const auto lobe = [&](const glm::vec3& w) {
+        return std::exp(11.5f * (glm::dot(w, centre) - 1));
+    };
+    std::vector<Rgb> means;
+    for (size_t bin = 0; bin < mesh.bins(); ++bin)
+        means.emplace_back(integrate_bin(mesh, bin, Side::front,
+                                         [&](const glm::vec3& w) { return Rgb(lobe(w)); }) /
+                           mesh.solid_angle(bin));
+    const std::vector<BinPlane> planes = reconstruct(mesh, means);
+    const BinLookup lookup(mesh);
+    CounterRng rng(4, Purpose::test, 0, 0);
+    double planar = 0, constant = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const glm::vec3 w = uniform_direction(rng);
+        const glm::vec3 up(w.x, w.y, std::abs(w.z));
+        const BinPosition place = lookup.locate(up);
+        planar += square(planes[place.bin].at(place).r - lobe(up));
+        constant += square(means[place.bin].r - lobe(up));
+    }
+    EXPECT_LT(planar, constant / square(5.0));
+}
+
+TEST(BinReconstruction, LookupAgreesWithTheMeshBothWays) {
+    const DirectionMesh mesh;
+    const BinLookup lookup(mesh);
+    CounterRng rng(5, Purpose::test, 0, 0);
+    for (int i = 0; i < 20000; ++i) {
+        const BinPosition place{rng.bits() % static_cast<uint32_t>(mesh.bins()),
+                                1.998f * rng.uniform_float() - 0.999f,
+                                1.998f * rng.uniform_float() - 0.999f};
+        const glm::vec3 w = lookup.direction(place);
+        EXPECT_NEAR(glm::length(w), 1, 1e-6);
+        ASSERT_EQ(mesh.bin(glm::dvec3(w)), place.bin);
+        const BinPosition again = lookup.locate(w);
+        ASSERT_EQ(again.bin, place.bin);
+        ASSERT_NEAR(again.xi, place.xi, 1e-3);
+        ASSERT_NEAR(again.eta, place.eta, 1e-3);
+    }
+    for (const glm::vec3 edge : {glm::vec3(0, 0, 1), glm::vec3(1, 0, 0), glm::vec3(1, -0.0f, 0),
+                                 glm::vec3(1, -1e-30f, 0), glm::vec3(0, 0, -1)}) {
+        const BinPosition place = lookup.locate(edge);
+        EXPECT_LT(place.bin, mesh.bins());
+        EXPECT_LE(std::abs(place.xi), 1);
+        EXPECT_LE(std::abs(place.eta), 1);
+    }
+}
+
+TEST(BinReconstruction, SamplesItsPlane) {
+    // First moments of the density (1 + a·ξ + b·η)/4 over the square: a/3 and b/3.
+    for (const auto& [a, b] : {std::pair(0.0f, 0.0f), {0.7f, -0.3f}, {-1.0f, 0.0f}, {0.0f, 1.0f}}) {
+        constexpr int kSteps = 400;
+        glm::dvec2 mean(0);
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j)
+                mean += glm::dvec2(sample_plane(a, b, {(i + 0.5f) / kSteps, (j + 0.5f) / kSteps}));
+        mean /= square(kSteps);
+        EXPECT_NEAR(mean.x, a / 3, 1e-3) << a << " " << b;
+        EXPECT_NEAR(mean.y, b / 3, 1e-3) << a << " " << b;
+    }
+}
+
+TEST(TableBsdf, KeepsTheEnergyOfEveryBin) {
+    // Eyes exactly on a node: each bin's integral is the stored mean times its solid angle.
+    const TableBsdf& bsdf = satin();
+    const BsdfTable& table = bsdf.table();
+    for (const size_t d : {size_t{0}, size_t{30}, table.directions() / 2, table.directions() - 1}) {
+        const IncidentDirection& from = table.incident[d];
+        const glm::vec3 eye = direction(degrees(from.theta), degrees(from.phi), from.side);
+        for (int block = 0; block < 2; ++block)
+            for (size_t bin = 0; bin < table.exits.bins(); ++bin) {
+                const Side side =
+                    (from.side == Side::front) == (block == 0) ? Side::front : Side::back;
+                const glm::dvec3 flux =
+                    integrate_bin(table.exits, bin, side,
+                                  [&](const glm::vec3& light) { return bsdf.eval(eye, light); });
+                for (size_t band = 0; band < 3; ++band) {
+                    const double stored =
+                        table.at(d, block, bin, band) * table.exits.solid_angle(bin);
+                    ASSERT_NEAR(flux[static_cast<int>(band)], stored, 1e-4 * stored + 1e-9)
+                        << d << " " << block << " " << bin;
+                }
+            }
+    }
+}
+
+TEST(TableBsdf, IntegralsAreAlbedoAndOne) {
+    const TableBsdf& bsdf = satin();
+    const DirectionMesh& mesh = bsdf.table().exits;
+    for (const glm::vec3& eye : eyes()) {
+        glm::dvec3 scattered(0), density(0);
+        for (const Side side : {Side::front, Side::back})
+            for (size_t bin = 0; bin < mesh.bins(); ++bin) {
+                scattered += integrate_bin(
+                    mesh, bin, side, [&](const glm::vec3& light) { return bsdf.eval(eye, light); });
+                density += integrate_bin(mesh, bin, side, [&](const glm::vec3& light) {
+                    return Rgb(bsdf.pdf(eye, light));
+                });
+            }
+        const Rgb albedo = bsdf.albedo(eye);
+        for (int channel = 0; channel < 3; ++channel)
+            EXPECT_NEAR(scattered[channel], albedo[channel], 1e-5);
+        EXPECT_NEAR(density.x, 1, 1e-5);
+    }
+}
+
+TEST(TableBsdf, AlbedoLiesBetweenThatOfTheNodesAround) {
+    const TableBsdf& bsdf = satin();
+    const Rgb at_20 = bsdf.albedo(direction(20, 30)), at_30 = bsdf.albedo(direction(30, 30));
+    const Rgb between = bsdf.albedo(direction(24, 30));
+    EXPECT_NEAR(between.r, 0.6f * at_20.r + 0.4f * at_30.r, 1e-5);
+    EXPECT_NE(at_20.r, at_30.r);
+    EXPECT_EQ(bsdf.albedo(direction(89.9, 30)), bsdf.albedo(direction(88.5, 30)));
+    // Round the circle: from 345° to 360° towards 0°.
+    const Rgb last = bsdf.albedo(direction(40, 345)), first = bsdf.albedo(direction(40, 0));
+    EXPECT_NEAR(bsdf.albedo(direction(40, 357)).g, 0.2f * last.g + 0.8f * first.g, 1e-5);
+}
+
+TEST(TableBsdf, SampleEvalAndPdfAgree) {
+    const TableBsdf& bsdf = satin();
+    CounterRng rng(6, Purpose::test, 0, 0);
+    for (const glm::vec3& eye : eyes()) {
+        const Rgb albedo = bsdf.albedo(eye);
+        for (int i = 0; i < 20000; ++i) {
+            const auto sample =
+                bsdf.sample(eye, rng.uniform_float(), {rng.uniform_float(), rng.uniform_float()});
+            ASSERT_TRUE(sample);
+            ASSERT_NEAR(glm::length(sample->light), 1, 1e-6);
+            ASSERT_GT(sample->pdf, 0);
+            ASSERT_FLOAT_EQ(sample->pdf, bsdf.pdf(eye, sample->light));
+            const Rgb value = bsdf.eval(eye, sample->light);
+            for (int channel = 0; channel < 3; ++channel)
+                ASSERT_NEAR(sample->weight[channel] * sample->pdf, value[channel],
+                            1e-5f * value[channel]);
+            // No sample weighs more than another: the mean over the channels is the albedo's.
+            ASSERT_NEAR(sample->weight.r + sample->weight.g + sample->weight.b,
+                        albedo.r + albedo.g + albedo.b, 1e-5);
+        }
+    }
+}
+
+TEST(TableBsdf, EndsOfTheRandomNumbersAreSafe) {
+    const TableBsdf& bsdf = satin();
+    const float below_one = 0x1.fffffep-1f;
+    for (const glm::vec3& eye : eyes())
+        for (const float choice : {0.0f, 0x1p-24f, 0.5f, below_one})
+            for (const float u : {0.0f, below_one})
+                for (const float v : {0.0f, below_one}) {
+                    const auto sample = bsdf.sample(eye, choice, {u, v});
+                    ASSERT_TRUE(sample);
+                    EXPECT_NE(sample->light.z, 0);
+                    EXPECT_TRUE(std::isfinite(sample->weight.r) && std::isfinite(sample->pdf));
+                    EXPECT_LT(sample->weight.r, 3);
+                }
+}
+
+TEST(TableBsdf, TheEyeTakesTheIncidenceSlot) {
+    // Deliberately not reciprocal: all light leaves about +x, whatever it came from, and more of it
+    // from grazing incidence. With the slots exchanged eval(eye, light) would follow the light's θ.
+    const TableBsdf bsdf(
+        tests::synthetic_table([](const IncidentDirection& from, const glm::dvec3& out, size_t) {
+            const bool reflected = (out.z > 0) == (from.side == Side::front);
+            return reflected ? (0.02 + 0.05 * from.theta) * (1 + out.x) : 0;
+        }),
+        "");
+    const glm::vec3 steep = direction(10, 180), flat = direction(70, 0);
+    EXPECT_NEAR(bsdf.eval(steep, flat).g,
+                (0.02 + 0.05 * radians(10.0)) * (1 + std::sin(radians(70.0))), 1e-3);
+    EXPECT_NEAR(bsdf.eval(flat, steep).g,
+                (0.02 + 0.05 * radians(70.0)) * (1 - std::sin(radians(10.0))), 1e-3);
+    EXPECT_GT(bsdf.albedo(flat).g, 1.5f * bsdf.albedo(steep).g);
+}
+
+TEST(TableBsdf, SidesAndBlocksKeepTheirPlaces) {
+    // front→front 0.1, front→back 0.2, back→back 0.3, back→front 0.4: share of the flux, even.
+    BsdfTable table =
+        tests::synthetic_table([](const IncidentDirection& from, const glm::dvec3& out, size_t) {
+            const bool front = from.side == Side::front, up = out.z > 0;
+            return (front ? (up ? 0.1 : 0.2) : (up ? 0.4 : 0.3)) / (2 * kPi);
+        });
+    for (size_t d = 0; d < table.directions(); ++d) {
+        const float unscattered = table.incident[d].side == Side::front ? 0.25f : 0.125f;
+        for (size_t band = 0; band < 3; ++band)
+            table.unscattered[3 * d + band] = unscattered;
+    }
+    const TableBsdf bsdf(std::move(table), "");
+    const glm::vec3 up = direction(50, 77), down = direction(35, 140, Side::back);
+    const float even = static_cast<float>(1 / (2 * kPi));
+    EXPECT_NEAR(bsdf.eval(up, up).r, 0.1f * even, 1e-6);
+    EXPECT_NEAR(bsdf.eval(up, down).r, 0.2f * even, 1e-6);
+    EXPECT_NEAR(bsdf.eval(down, down).r, 0.3f * even, 1e-6);
+    EXPECT_NEAR(bsdf.eval(down, up).r, 0.4f * even, 1e-6);
+    EXPECT_NEAR(bsdf.albedo(up).r, 0.3f, 1e-5);
+    EXPECT_NEAR(bsdf.albedo(down).r, 0.7f, 1e-5);
+    EXPECT_NEAR(bsdf.unscattered(up).r, 0.25f, 1e-6);
+    EXPECT_NEAR(bsdf.unscattered(down).r, 0.125f, 1e-6);
+}
+
+TEST(TableBsdf, NothingScattersOnTheHorizonOrFromABlackCloth) {
+    const glm::vec3 horizon(1, 0, 0), up(0, 0, 1);
+    const TableBsdf& bsdf = satin();
+    EXPECT_EQ(bsdf.eval(horizon, up), Rgb(0));
+    EXPECT_EQ(bsdf.eval(up, horizon), Rgb(0));
+    EXPECT_EQ(bsdf.pdf(horizon, up), 0);
+    EXPECT_EQ(bsdf.pdf(up, horizon), 0);
+    EXPECT_FALSE(bsdf.sample(horizon, 0.5f, {0.5f, 0.5f}));
+    EXPECT_EQ(bsdf.unscattered(horizon), Rgb(0));
+    EXPECT_EQ(bsdf.albedo(horizon), Rgb(0));
+
+    const TableBsdf black(tests::small_synthetic_table([](const IncidentDirection&,
+                                                          const glm::dvec3&, size_t) { return 0; }),
+                          "");
+    EXPECT_EQ(black.eval(up, up), Rgb(0));
+    EXPECT_EQ(black.pdf(up, up), 0);
+    EXPECT_FALSE(black.sample(up, 0.5f, {0.5f, 0.5f}));
+}
+
+TEST(TableBsdf, DarkNodesBesideBrightOnesAreNeverSampled) {
+    // Scatters for θ ≥ 20° only, and only into +x: between 10° and 20° one node has all the weight.
+    const TableBsdf bsdf(
+        tests::synthetic_table([](const IncidentDirection& from, const glm::dvec3& out, size_t) {
+            const bool reflected = (out.z > 0) == (from.side == Side::front);
+            return from.theta > 0.3 && reflected && out.x > 0 ? 0.1 : 0.0;
+        }),
+        "");
+    CounterRng rng(7, Purpose::test, 0, 0);
+    const glm::vec3 eye = direction(11, 5);
+    EXPECT_FALSE(bsdf.sample(direction(9, 5), 0.3f, {0.5f, 0.5f}));
+    for (int i = 0; i < 10000; ++i) {
+        const auto sample =
+            bsdf.sample(eye, rng.uniform_float(), {rng.uniform_float(), rng.uniform_float()});
+        ASSERT_TRUE(sample);
+        ASSERT_GT(sample->light.z, 0);
+        ASSERT_GT(sample->light.x, -1e-5f);
+    }
+}
+
+TEST(TableBsdf, SpectralBandsBecomeColour) {
+    // Equal in all bands is white; one green band alone lies outside sRGB and must not go negative.
+    const Bands bands = Bands::from_edges({400, 500, 520, 700});
+    BsdfTable grey = make_full_table(bands, true, true), green = grey;
+    tests::fill_table(
+        grey, [](const IncidentDirection&, const glm::dvec3&, size_t) { return 0.5 / (4 * kPi); });
+    tests::fill_table(green, [](const IncidentDirection&, const glm::dvec3&, size_t band) {
+        return band == 1 ? 0.5 / (4 * kPi) : 0;
+    });
+    const glm::vec3 eye = direction(30, 30);
+    const Rgb white = TableBsdf(grey, "").albedo(eye);
+    for (int channel = 0; channel < 3; ++channel)
+        EXPECT_NEAR(white[channel], 0.5, 1e-3);
+    const Rgb expected = bands.to_rgb()[1] * 0.5f;
+    EXPECT_LT(expected.r, 0);
+    const Rgb colour = TableBsdf(green, "").albedo(eye);
+    EXPECT_GE(colour.r, 0);
+    EXPECT_GT(colour.g, colour.r);
+    EXPECT_NEAR(luminance(colour), luminance(expected), 1e-4);
+}
+
+TEST(TableBsdf, RefusesTablesWithGaps) {
+    const auto message = [](BsdfTable table) {
+        try {
+            TableBsdf(std::move(table), "half.bsdf");
+        } catch (const FileError& error) {
+            EXPECT_EQ(error.path, "half.bsdf");
+            return error.found;
+        }
+        return std::string("no error");
+    };
+    EXPECT_EQ(message(make_full_table(Bands{}, true, false)), "no back side");
+    EXPECT_EQ(message(make_full_table(Bands{}, false, true)), "no front side");
+    EXPECT_EQ(message(make_partial_table(Bands{}, {{Side::front, 0, 0}})),
+              "a partial table of 1 directions of incidence");
+}
+
+} // namespace
+} // namespace rapport
