@@ -17,4 +17,19 @@ struct Camera {
     kernel::Ray ray(const glm::vec2& pixel) const;
 };
 
+/// Generates a camera's rays; all that does not depend on the pixel is worked out once.
+class CameraRays {
+  public:
+    explicit CameraRays(const Camera& camera);
+    kernel::Ray operator()(const glm::vec2& pixel) const;
+    /// Of a world-space point: along the viewing direction, in world units.
+    float depth(const glm::vec3& point) const { return glm::dot(point - eye_, forward_); }
+
+  private:
+    // A ray starts at eye + origin·(x, y) and runs along direction·(x, y, 1); one of the two
+    // matrices does not vary with the pixel.
+    glm::vec3 eye_, forward_;
+    glm::mat3 origin_, direction_;
+};
+
 } // namespace rapport

@@ -50,5 +50,15 @@ struct LightContext {
 };
 using LightFactory = std::function<std::shared_ptr<Light>(const LightContext&)>;
 using LightRegistry = Registry<LightFactory>;
+/// A new light is one file with, at its end,
+///     const Registered<LightFactory> registered("name", make_name);
+/// Makes the light `name`, or throws a FileError that lists the names there are, or the parameters
+/// where one is not known.
+std::shared_ptr<Light> make_light(const std::string& name, const LightContext& context);
+
+/// "rgb L" (default 1) times "float scale" (default 1), checked to be no less than 0.
+Rgb light_radiance(const Params& params);
+/// "float scale", no less than 0; default 1.
+float light_scale(const Params& params);
 
 } // namespace rapport

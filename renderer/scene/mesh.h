@@ -18,14 +18,15 @@ struct TriangleMesh {
     std::vector<glm::uvec3> triangles; ///< counter-clockwise seen from the face side
 };
 
-/// A mesh as a file holds it: corners index positions and UVs apart, so that a UV seam does not
-/// cut the surface.
+/// A mesh as a file holds it: corners index positions, UVs and normals apart, so that a UV seam
+/// does not cut the surface. Indices are valid and coordinates finite.
 struct IndexedMesh {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec2> uvs;             ///< v upwards
-    std::vector<glm::vec3> normals;         ///< per corner-vertex as in the file; may be empty
+    std::vector<glm::vec2> uvs; ///< v upwards
+    std::vector<glm::vec3> normals;
     std::vector<glm::uvec3> position_index; ///< per triangle
     std::vector<glm::uvec3> uv_index;       ///< per triangle; empty when there are no UVs
+    std::vector<glm::uvec3> normal_index;   ///< per triangle; empty when there are no normals
 };
 
 } // namespace rapport

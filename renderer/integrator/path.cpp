@@ -1,0 +1,162 @@
+#include "renderer/integrator/path.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace rapport {
+namespace {
+
+constexpr int kRouletteDepth = 3; ///< scattering events before Russian roulette
+/// Shadow rays stop short of the light by this share of their length.
+constexpr float kShadowShare = 1 - 1e-4f;
+
+float mean(const Rgb& c) { return (c.r + c.g + c.b) * (1 / 3.0f); }
+
+float balance(float chosen, float other) { return chosen / (chosen + other); }
+
+/// The last scattering event of the path.
+struct Scattering {
+    glm::vec3 position;
+    float pdf; ///< of the direction it took
+};
+
+/// Whether a direction lies on the same side by the geometry as by the shading frame. Where it
+/// does not, light would leak through a surface that is smooth only in its normals.
+bool sides_agree(const SurfacePoint& point, const glm::vec3& world, const glm::vec3& local) {
+    return glm::dot(world, point.geometric_normal) * local.z > 0;
+}
+
+/// The shading frame, or, where the eye sees by the geometry one side and by the shading normal
+/// the other, as on silhouettes, the frame of the geometric normal.
+Frame frame_for(const SurfacePoint& point, const glm::vec3& eye) {
+    const Frame& shading = point.frame;
+    if (glm::dot(eye, shading.z) * glm::dot(eye, point.geometric_normal) > 0)
+        return shading;
+    const glm::vec3 z = point.geometric_normal;
+    const glm::vec3 y = shading.y - glm::dot(shading.y, z) * z;
+    const float length = glm::length(y);
+    if (!(length > 1e-6f))
+        return Frame::about(z);
+    Frame frame;
+    frame.z = z;
+    frame.y = y / length;
+    frame.x = glm::cross(frame.y, frame.z);
+    return frame;
+}
+
+/// Light scattered towards the eye out of one sampled direction of one sampled light.
+Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& frame,
+                 const glm::vec3& eye, Sampler& sampler) {
+    const float u = sampler.next_1d();
+    const glm::vec2 v = sampler.next_2d();
+    const auto choice = scene.choose_light(u);
+    if (!choice)
+        return Rgb(0);
+    const auto light = choice->light->sample(point.position, v);
+    if (!light)
+        return Rgb(0);
+    const glm::vec3 local = frame.to_local(light->direction);
+    if (!sides_agree(point, light->direction, local))
+        return Rgb(0);
+    const Bsdf& material = *point.surface->material;
+    const Rgb scattered = material.eval(eye, local);
+    if (scattered == Rgb(0))
+        return Rgb(0);
+    const glm::vec3 origin = offset_origin(point, light->direction);
+    const float distance = light->distance - glm::dot(origin - point.position, light->direction);
+    const Rgb passed = scene.transmittance(origin, light->direction, distance * kShadowShare);
+    if (passed == Rgb(0))
+        return Rgb(0);
+    const Rgb arriving = scattered * passed * light->radiance;
+    if (light->delta)
+        return arriving / choice->probability;
+    const float density = choice->probability * light->pdf;
+    return arriving * (balance(density, material.pdf(eye, local)) / density);
+}
+
+Rgb escaped_radiance(const Scene& scene, const glm::vec3& direction,
+                     const std::optional<Scattering>& last) {
+    Rgb radiance(0);
+    for (const auto& [light, probability] : scene.distant_lights()) {
+        const Rgb escaped = light->escaped(direction);
+        if (escaped == Rgb(0))
+            continue;
+        radiance += last ? escaped * balance(last->pdf, probability * light->escaped_pdf(direction))
+                         : escaped;
+    }
+    return radiance;
+}
+
+Rgb emitted_radiance(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
+                     const std::optional<Scattering>& last) {
+    const AreaLight* const light = point.surface->area_light.get();
+    if (!light)
+        return Rgb(0);
+    const Rgb emitted = light->emitted(point.geometric_normal, -direction);
+    if (emitted == Rgb(0) || !last)
+        return emitted;
+    const float density = scene.choice_probability(*light) *
+                          light->pdf(point.position - last->position, point.geometric_normal);
+    return emitted * balance(last->pdf, density);
+}
+
+} // namespace
+
+PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
+    PathResult path;
+    Rgb throughput(1);
+    std::optional<Scattering> last;
+    int depth = 0;
+    for (int layers = 0; layers <= Scene::kMaxLayers;) {
+        const std::optional<SurfacePoint> point = scene.intersect(ray);
+        if (!point) {
+            path.radiance += throughput * escaped_radiance(scene, ray.dir, last);
+            break;
+        }
+        if (depth == 0 && layers == 0)
+            path.first = point;
+        path.radiance += throughput * emitted_radiance(scene, *point, ray.dir, last);
+
+        const Frame frame = frame_for(*point, -ray.dir);
+        const glm::vec3 eye = frame.to_local(-ray.dir);
+        const Bsdf& material = *point->surface->material;
+        const Rgb unscattered = material.unscattered(eye);
+        if (const float pass = std::min(mean(unscattered), 1.0f); pass > 0) {
+            if (sampler.next_1d() < pass) {
+                throughput *= unscattered / pass;
+                ray = {offset_origin(*point, ray.dir), ray.dir};
+                ++layers;
+                continue;
+            }
+            throughput /= 1 - pass;
+        }
+        if (depth++ == scene.settings.max_depth)
+            break;
+
+        path.radiance += throughput * direct_light(scene, *point, frame, eye, sampler);
+
+        const float choice = sampler.next_1d();
+        const auto sample = material.sample(eye, choice, sampler.next_2d());
+        if (!sample)
+            break;
+        const glm::vec3 direction = glm::normalize(frame.to_world(sample->light));
+        if (!sides_agree(*point, direction, sample->light))
+            break;
+        throughput *= sample->weight;
+        if (depth > kRouletteDepth) {
+            const float survival =
+                std::min(1.0f, std::max({throughput.r, throughput.g, throughput.b}));
+            if (!(sampler.next_1d() < survival))
+                break;
+            throughput /= survival;
+        }
+        if (throughput == Rgb(0))
+            break;
+        last = Scattering{point->position, sample->pdf};
+        ray = {offset_origin(*point, direction), direction};
+        layers = 0;
+    }
+    return path;
+}
+
+} // namespace rapport

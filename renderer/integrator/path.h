@@ -1,0 +1,27 @@
+#pragma once
+
+#include "renderer/core/sampler.h"
+#include "renderer/scene/scene.h"
+
+#include <optional>
+
+namespace rapport {
+
+struct PathResult {
+    Rgb radiance{0};
+    std::optional<SurfacePoint> first; ///< what the camera ray met, whether or not it scattered
+};
+
+/// Follows one camera path against the light.
+///
+/// At each vertex, light reaches the eye by three ways that share nothing: emission; scattering,
+/// estimated by one light sample and by one BSDF sample that are weighted against each other
+/// (Veach 1997, balance heuristic); and the unscattered beam. The last is a null interaction: the
+/// path goes straight on and the vertex leaves no trace in it, so that an emitter behind cloth is
+/// weighted by the densities at the last scattering vertex, just as a shadow ray weights it that
+/// goes through the same cloth (Scene::transmittance).
+///
+/// `max_depth` counts scattering events, as in pbrt: 0 shows emission only, 1 adds direct light.
+PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler);
+
+} // namespace rapport

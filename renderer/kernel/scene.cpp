@@ -1,0 +1,110 @@
+#include "renderer/kernel/scene.h"
+
+#include "renderer/kernel/embree.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+namespace rapport::kernel {
+namespace {
+
+bool finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// What Embree may be asked: it aborts the process on NaN, on far origins and on negative tnear.
+std::optional<RTCRay> usable(const Ray& ray) {
+    constexpr float kFarthest = 1e18f;
+    const float tnear = std::max(ray.tnear, 0.0f); // also 0 for NaN, which the next line refuses
+    if (!finite(ray.org) || !finite(ray.dir) || std::isnan(ray.tnear) || !(tnear <= ray.tfar) ||
+        glm::any(glm::greaterThan(glm::abs(ray.org), glm::vec3(kFarthest))))
+        return std::nullopt;
+    return embree::make_ray(ray.org.x, ray.org.y, ray.org.z, ray.dir.x, ray.dir.y, ray.dir.z, tnear,
+                            ray.tfar);
+}
+
+} // namespace
+
+struct Scene::Implementation {
+    embree::Device device = embree::make_device();
+    embree::Scene scene = embree::make_scene(device.get());
+    glm::vec3 low{std::numeric_limits<float>::infinity()};
+    glm::vec3 high{-std::numeric_limits<float>::infinity()};
+};
+
+Scene::Scene() : implementation_(std::make_unique<Implementation>()) {
+    rtcSetSceneFlags(implementation_->scene.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(implementation_->scene.get(), RTC_BUILD_QUALITY_HIGH);
+}
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+uint32_t Scene::add_triangles(std::span<const glm::vec3> positions,
+                              std::span<const glm::uvec3> triangles) {
+    for (const glm::uvec3& t : triangles)
+        if (std::max({t.x, t.y, t.z}) >= positions.size())
+            throw std::invalid_argument("a triangle names a vertex that the mesh does not have");
+    Implementation& self = *implementation_;
+    const embree::Geometry geometry =
+        embree::make_geometry(self.device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (!triangles.empty()) {
+        void* vertices =
+            rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                    sizeof(glm::vec3), positions.size());
+        void* indices =
+            rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    sizeof(glm::uvec3), triangles.size());
+        embree::check(self.device.get());
+        std::memcpy(vertices, positions.data(), positions.size_bytes());
+        std::memcpy(indices, triangles.data(), triangles.size_bytes());
+    }
+    rtcCommitGeometry(geometry.get());
+    const uint32_t number = rtcAttachGeometry(self.scene.get(), geometry.get());
+    embree::check(self.device.get());
+    for (const glm::vec3& p : positions) {
+        self.low = glm::min(self.low, p);
+        self.high = glm::max(self.high, p);
+    }
+    return number;
+}
+
+void Scene::commit() {
+    rtcCommitScene(implementation_->scene.get());
+    embree::check(implementation_->device.get());
+}
+
+std::optional<Hit> Scene::intersect(const Ray& ray) const {
+    const std::optional<RTCRay> safe = usable(ray);
+    if (!safe)
+        return std::nullopt;
+    embree::Context context;
+    embree::initialise(context);
+    RTCRayHit query = embree::make_ray_hit(*safe);
+    embree::intersect(implementation_->scene.get(), context, query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return std::nullopt;
+    return Hit{query.ray.tfar,
+               query.hit.geomID,
+               query.hit.primID,
+               query.hit.u,
+               query.hit.v,
+               glm::normalize(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z))};
+}
+
+bool Scene::occluded(const Ray& ray) const {
+    std::optional<RTCRay> query = usable(ray);
+    if (!query)
+        return false;
+    embree::Context context;
+    embree::initialise(context);
+    embree::occluded(implementation_->scene.get(), context, *query);
+    return query->tfar < 0; // Embree's mark of a blocked ray
+}
+
+std::pair<glm::vec3, glm::vec3> Scene::bounds() const {
+    return {implementation_->low, implementation_->high};
+}
+
+} // namespace rapport::kernel

@@ -1,0 +1,35 @@
+#include "renderer/scene/camera.h"
+
+namespace rapport {
+
+CameraRays::CameraRays(const Camera& camera) {
+    const glm::vec2 size(camera.resolution);
+    const glm::vec2 half = size / std::min(size.x, size.y);
+    const glm::vec4 window = camera.screen_window == glm::vec4(0)
+                                 ? glm::vec4(-half.x, half.x, -half.y, half.y)
+                                 : camera.screen_window;
+    // Film to screen: x from left to right, y from the top, which is the window's upper end.
+    const glm::mat3 screen((window.y - window.x) / size.x, 0, 0, //
+                           0, (window.z - window.w) / size.y, 0, //
+                           window.x, window.w, 1);
+    const glm::mat3 axes(camera.to_world);
+    eye_ = glm::vec3(camera.to_world[3]);
+    forward_ = glm::normalize(axes[2]);
+    if (camera.kind == Camera::Kind::perspective) {
+        const float scale = std::tan(radians(camera.fov_degrees) / 2);
+        origin_ = glm::mat3(0);
+        direction_ = axes * glm::mat3(scale, 0, 0, 0, scale, 0, 0, 0, 1) * screen;
+    } else {
+        origin_ = axes * glm::mat3(1, 0, 0, 0, 1, 0, 0, 0, 0) * screen;
+        direction_ = glm::mat3(glm::vec3(0), glm::vec3(0), axes[2]);
+    }
+}
+
+kernel::Ray CameraRays::operator()(const glm::vec2& pixel) const {
+    const glm::vec3 film(pixel, 1);
+    return {eye_ + origin_ * film, glm::normalize(direction_ * film)};
+}
+
+kernel::Ray Camera::ray(const glm::vec2& pixel) const { return CameraRays(*this)(pixel); }
+
+} // namespace rapport

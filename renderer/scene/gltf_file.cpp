@@ -1,0 +1,126 @@
+#include "renderer/scene/gltf_file.h"
+
+#include "renderer/core/error.h"
+#include "renderer/scene/file_bytes.h"
+#include "renderer/scene/gltf_json.h"
+
+#include <bit>
+#include <cstring>
+#include <fmt/format.h>
+
+namespace rapport {
+namespace {
+
+constexpr uint32_t kMagic = 0x46546c67;     // "glTF"
+constexpr uint32_t kJsonChunk = 0x4e4f534a; // "JSON"
+constexpr size_t kHeaderSize = 12, kChunkHeaderSize = 8;
+
+uint32_t word_at(const std::vector<char>& file, size_t offset) {
+    uint32_t word;
+    std::memcpy(&word, file.data() + offset, sizeof word);
+    if constexpr (std::endian::native == std::endian::big)
+        word = __builtin_bswap32(word);
+    return word;
+}
+
+bool is_glb(const std::vector<char>& file) {
+    return file.size() >= sizeof kMagic && word_at(file, 0) == kMagic;
+}
+
+/// The JSON chunk of a GLB, after checking that all chunks lie in the file.
+std::string_view glb_json(const std::vector<char>& file, const std::string& path) {
+    if (file.size() < kHeaderSize + kChunkHeaderSize)
+        throw FileError(path, "header", "20 bytes or more", fmt::format("{}", file.size()));
+    if (word_at(file, 4) != 2)
+        throw FileError(path, "header", "GLB version 2", fmt::format("{}", word_at(file, 4)));
+    const size_t length = word_at(file, 8);
+    if (length > file.size())
+        throw FileError(path, "header", fmt::format("{} bytes", length),
+                        fmt::format("{}", file.size()));
+    if (word_at(file, 16) != kJsonChunk)
+        throw FileError(path, "chunk 0", "the JSON chunk", "another");
+    size_t offset = kHeaderSize;
+    for (int chunk = 0; offset < length; ++chunk) {
+        const size_t room = length - offset;
+        if (room < kChunkHeaderSize || word_at(file, offset) > room - kChunkHeaderSize)
+            throw FileError(path, fmt::format("chunk {}", chunk), "a chunk that ends in the file",
+                            fmt::format("{} bytes left", room));
+        offset += kChunkHeaderSize + word_at(file, offset);
+    }
+    return {file.data() + kHeaderSize + kChunkHeaderSize, word_at(file, kHeaderSize)};
+}
+
+/// Only files beside the glTF, and nothing that could block or be expanded by a shell.
+tinygltf::FsCallbacks plain_file_access() {
+    tinygltf::FsCallbacks access{};
+    access.FileExists = [](const std::string& name, void*) {
+        // tinygltf also looks in the current directory, which would be another file by chance.
+        const std::filesystem::path file(name);
+        std::error_code error;
+        return file.is_absolute() && std::filesystem::is_regular_file(file, error);
+    };
+    access.ExpandFilePath = [](const std::string& name, void*) { return name; };
+    access.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string* message,
+                              const std::string& name, void*) {
+        try {
+            const std::vector<char> file = read_file(name);
+            bytes->assign(file.begin(), file.end());
+            return true;
+        } catch (const FileError& error) {
+            *message += error.what();
+            return false;
+        }
+    };
+    return access;
+}
+
+bool ignore_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*,
+                  int, void*) {
+    return true;
+}
+
+std::string one_line(std::string text) {
+    text.erase(text.find_last_not_of(" \n\r") + 1);
+    for (char& c : text)
+        c = c == '\n' || c == '\r' ? ' ' : c;
+    return text;
+}
+
+} // namespace
+
+tinygltf::Model load_gltf_file(const std::filesystem::path& path,
+                               std::vector<std::string>& warnings) {
+    const std::vector<char> file = read_file(path);
+    const std::string name = path.string();
+    if (file.size() > std::numeric_limits<uint32_t>::max())
+        throw FileError(name, "", "less than 4 GB", fmt::format("{} bytes", file.size()));
+    const bool binary = is_glb(file);
+    if (!binary && path.extension() == ".glb")
+        throw FileError(name, "header", "'glTF'", "another beginning");
+    check_gltf_json(binary ? glb_json(file, name) : std::string_view(file.data(), file.size()),
+                    name, warnings);
+
+    tinygltf::TinyGLTF loader;
+    loader.SetFsCallbacks(plain_file_access());
+    loader.SetImageLoader(ignore_image, nullptr);
+    const std::string folder = std::filesystem::absolute(path).parent_path().string();
+    const auto size = static_cast<unsigned int>(file.size());
+    tinygltf::Model model;
+    std::string error, unused; // tinygltf's warnings are about images
+    bool loaded = false;
+    try {
+        loaded =
+            binary
+                ? loader.LoadBinaryFromMemory(&model, &error, &unused,
+                                              reinterpret_cast<const unsigned char*>(file.data()),
+                                              size, folder)
+                : loader.LoadASCIIFromString(&model, &error, &unused, file.data(), size, folder);
+    } catch (const std::exception& exception) {
+        error = exception.what();
+    }
+    if (!loaded)
+        throw FileError(name, "", "a valid glTF 2.0 file", one_line(error));
+    return model;
+}
+
+} // namespace rapport

@@ -1,0 +1,147 @@
+#include "renderer/scene/scene.h"
+
+#include "renderer/scene/mesh_operations.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace rapport {
+namespace {
+
+template <class T>
+T interpolate(const std::vector<T>& values, const glm::uvec3& t, const kernel::Hit& hit) {
+    return (1 - hit.u - hit.v) * values[t.x] + hit.u * values[t.y] + hit.v * values[t.z];
+}
+
+float largest_coordinate(const glm::vec3& p) {
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+}
+
+} // namespace
+
+Scene::Scene(std::vector<Surface> surfaces, std::vector<std::shared_ptr<Light>> lights,
+             Camera camera, RenderSettings settings)
+    : camera(std::move(camera)), settings(std::move(settings)), surfaces_(std::move(surfaces)),
+      lights_(std::move(lights)) {
+    for (Surface& surface : surfaces_) {
+        orient_by_normals(surface.mesh);
+        kernel_.add_triangles(surface.mesh.positions, surface.mesh.triangles);
+        if (surface.emission != Rgb(0))
+            surface.area_light = std::make_shared<const AreaLight>(surface.mesh, surface.emission,
+                                                                   surface.two_sided_emission);
+    }
+    kernel_.commit();
+
+    const auto [low, high] = kernel_.bounds();
+    const bool empty = !(low.x <= high.x);
+    for (const auto& light : lights_)
+        light->prepare(empty ? glm::vec3(0) : 0.5f * (low + high),
+                       empty ? 1.0f : std::max(0.5f * glm::length(high - low), 1e-6f));
+
+    std::vector<const Light*> all;
+    for (const auto& light : lights_)
+        all.push_back(light.get());
+    for (const Surface& surface : surfaces_)
+        if (surface.area_light)
+            all.push_back(surface.area_light.get());
+    double total = 0;
+    for (const Light* light : all)
+        total += light->power();
+    for (size_t i = 0; i < all.size(); ++i) {
+        if (!(all[i]->power() > 0))
+            continue;
+        const LightChoice choice{all[i], static_cast<float>(all[i]->power() / total)};
+        choices_.push_back(choice);
+        probability_[all[i]] = choice.probability;
+        if (i < lights_.size())
+            distant_lights_.push_back(choice);
+    }
+}
+
+Frame Scene::shading_frame(const Surface& surface, const kernel::Hit& hit) const {
+    const TriangleMesh& mesh = surface.mesh;
+    const glm::uvec3 t = mesh.triangles[hit.primitive];
+    glm::vec3 z = hit.geometric_normal;
+    if (!mesh.normals.empty()) {
+        const glm::vec3 normal = interpolate(mesh.normals, t, hit);
+        if (const float length = glm::length(normal); length > 0)
+            z = normal / length;
+    }
+    glm::vec3 warp(0);
+    if (!mesh.warp.empty())
+        warp = interpolate(mesh.warp, t, hit);
+    else if (!mesh.uvs.empty())
+        warp = triangle_warp(mesh, hit.primitive);
+    const glm::vec3 y = warp - glm::dot(warp, z) * z;
+    const float length2 = glm::dot(y, y);
+    // A warp along the normal, or none, gives no direction.
+    if (!(length2 > 1e-12f * glm::dot(warp, warp)) ||
+        !(length2 < std::numeric_limits<float>::infinity()))
+        return Frame::about(z);
+    Frame frame;
+    frame.z = z;
+    frame.y = y / std::sqrt(length2);
+    frame.x = glm::cross(frame.y, frame.z);
+    return frame;
+}
+
+std::optional<SurfacePoint> Scene::intersect(const kernel::Ray& ray) const {
+    const std::optional<kernel::Hit> hit = kernel_.intersect(ray);
+    if (!hit)
+        return std::nullopt;
+    const Surface& surface = surfaces_[hit->geometry];
+    const TriangleMesh& mesh = surface.mesh;
+    const glm::uvec3 t = mesh.triangles[hit->primitive];
+    const glm::vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+    SurfacePoint point;
+    point.position = (1 - hit->u - hit->v) * a + hit->u * b + hit->v * c;
+    point.geometric_normal = hit->geometric_normal;
+    point.frame = shading_frame(surface, *hit);
+    point.uv = mesh.uvs.empty() ? glm::vec2(0) : interpolate(mesh.uvs, t, *hit);
+    point.surface = &surface;
+    point.triangle = hit->primitive;
+    point.distance = hit->t;
+    point.reach = std::max({largest_coordinate(a), largest_coordinate(b), largest_coordinate(c)});
+    return point;
+}
+
+Rgb Scene::transmittance(const glm::vec3& from, const glm::vec3& direction, float distance) const {
+    Rgb passed(1);
+    kernel::Ray ray{from, direction, 0, distance};
+    for (int layer = 0; layer < kMaxLayers; ++layer) {
+        const std::optional<SurfacePoint> point = intersect(ray);
+        if (!point)
+            return passed;
+        passed *= point->surface->material->unscattered(point->frame.to_local(-direction));
+        if (passed == Rgb(0))
+            return passed;
+        ray.org = offset_origin(*point, direction);
+        ray.tfar = distance - glm::dot(ray.org - from, direction);
+    }
+    return Rgb(0);
+}
+
+std::optional<Scene::LightChoice> Scene::choose_light(float u) const {
+    if (choices_.empty())
+        return std::nullopt;
+    for (const LightChoice& choice : choices_) {
+        if (u < choice.probability)
+            return choice;
+        u -= choice.probability;
+    }
+    return choices_.back(); // what rounding leaves of [0, 1)
+}
+
+float Scene::choice_probability(const Light& light) const {
+    const auto found = probability_.find(&light);
+    return found == probability_.end() ? 0 : found->second;
+}
+
+glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction) {
+    const float distance = 16 * std::numeric_limits<float>::epsilon() * point.reach;
+    return point.position + std::copysign(distance, glm::dot(direction, point.geometric_normal)) *
+                                point.geometric_normal;
+}
+
+} // namespace rapport

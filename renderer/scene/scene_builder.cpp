@@ -1,0 +1,130 @@
+#include "renderer/scene/scene_builder.h"
+
+#include "renderer/core/error.h"
+#include "renderer/scene/mesh_operations.h"
+#include "renderer/scene/shape.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <set>
+
+namespace rapport {
+namespace {
+
+using MaterialPointer = std::shared_ptr<const MaterialDescription>;
+
+MaterialPointer cloth_material(const std::string& name, const std::filesystem::path& file) {
+    auto material = std::make_shared<MaterialDescription>();
+    material->type = "cloth";
+    material->name = name;
+    material->params = Params(file.string(), "cloth", 0);
+    Param filename;
+    filename.type = "string";
+    filename.name = "filename";
+    filename.strings = {file.string()};
+    material->params.add(std::move(filename));
+    return material;
+}
+
+class Builder {
+  public:
+    Builder(const SceneDescription& description, const BuildOptions& options,
+            std::vector<std::string>& warnings)
+        : description_(description), options_(options), warnings_(warnings),
+          base_dir_(description.path.parent_path()) {
+        for (const auto& [name, file] : options.cloths)
+            overrides_[name] = cloth_material(name, file);
+        for (const auto& [name, material] : description.named_materials)
+            names_met_.insert(name);
+    }
+
+    Scene build() {
+        std::vector<std::shared_ptr<Light>> lights;
+        for (const LightDescription& light : description_.lights)
+            lights.push_back(make_light(light.type, {light.params, base_dir_, light.to_world}));
+        std::vector<Surface> surfaces;
+        for (const ShapeDescription& shape : description_.shapes)
+            add_shape(shape, surfaces);
+        for (const auto& [name, file] : options_.cloths)
+            if (!name.empty() && !names_met_.contains(name))
+                throw FileError(description_.path.string(), "",
+                                names_met_.empty() ? "a named material, of which it has none"
+                                                   : fmt::format("a material of its own: {}",
+                                                                 fmt::join(names_met_, ", ")),
+                                fmt::format("\"{}\" for {}", name, file.string()));
+        return Scene(std::move(surfaces), std::move(lights), description_.camera,
+                     description_.settings);
+    }
+
+  private:
+    void add_shape(const ShapeDescription& shape, std::vector<Surface>& surfaces) {
+        const auto needs_uvs = [&](const std::string& name) {
+            return material_for(shape, name)->type == "cloth";
+        };
+        std::vector<ShapePart> parts =
+            make_shape(shape.type, {shape.params, base_dir_, needs_uvs, warnings_});
+        for (ShapePart& part : parts) {
+            const MaterialPointer material = material_for(shape, part.material);
+            if (material->type == "cloth" && part.mesh.uvs.empty())
+                throw FileError(shape.params.path(), shape.params.line(),
+                                "UVs, along which the cloth lies", "a mesh without");
+            Surface surface;
+            surface.mesh = std::move(part.mesh);
+            transform(surface.mesh, shape.to_world);
+            if (shape.reverse_orientation)
+                reverse_orientation(surface.mesh);
+            surface.material = bsdf(material);
+            if (shape.area_light)
+                set_emission(*shape.area_light, surface);
+            surfaces.push_back(std::move(surface));
+        }
+    }
+
+    /// In this order: the caller's cloth for a glTF part by its name, or for all parts; the scene's
+    /// material of the part's name; the caller's cloth for the current material, or that itself.
+    MaterialPointer material_for(const ShapeDescription& shape, const std::string& part) {
+        if (!part.empty())
+            names_met_.insert(part);
+        if (shape.type == "gltf")
+            for (const std::string& name : {part, std::string()})
+                if (const auto found = overrides_.find(name); found != overrides_.end())
+                    return found->second;
+        if (const auto named = description_.named_materials.find(part);
+            named != description_.named_materials.end())
+            return named->second;
+        const auto found = overrides_.find(shape.material->name);
+        return found != overrides_.end() && !found->first.empty() ? found->second : shape.material;
+    }
+
+    std::shared_ptr<const Bsdf> bsdf(const MaterialPointer& material) {
+        auto& made = materials_[material.get()];
+        if (!made)
+            made = make_material(material->type,
+                                 {material->params, material->base_dir, options_.load_table});
+        return made;
+    }
+
+    /// AreaLightSource "diffuse": "rgb L" radiance, "float scale", "bool twosided".
+    static void set_emission(const Params& params, Surface& surface) {
+        surface.emission = light_radiance(params);
+        surface.two_sided_emission = params.get_bool("twosided", false);
+        params.check_all_used();
+    }
+
+    const SceneDescription& description_;
+    const BuildOptions& options_;
+    std::vector<std::string>& warnings_;
+    std::filesystem::path base_dir_;
+    std::map<std::string, MaterialPointer> overrides_;
+    std::map<const MaterialDescription*, std::shared_ptr<const Bsdf>> materials_;
+    std::set<std::string> names_met_;
+};
+
+} // namespace
+
+Scene build_scene(const SceneDescription& description, const BuildOptions& options,
+                  std::vector<std::string>& warnings) {
+    return Builder(description, options, warnings).build();
+}
+
+} // namespace rapport

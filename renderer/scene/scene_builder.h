@@ -1,0 +1,29 @@
+#pragma once
+
+#include "materials/bsdf.h"
+#include "renderer/scene/scene.h"
+#include "renderer/scene/scene_description.h"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rapport {
+
+struct BuildOptions {
+    /// Named material, of the scene or of a glTF model, → the cloth (.bsdf, .toml, .wif) that
+    /// replaces it; the empty name stands for every glTF material that is not listed. A name that
+    /// occurs nowhere is a FileError.
+    std::map<std::string, std::filesystem::path> cloths;
+    /// How materials get their tables; see TableLoader.
+    std::function<std::shared_ptr<const TableBsdf>(const std::filesystem::path&)> load_table;
+};
+
+/// Reads everything that a description names and makes the scene. What was ignored or mended on
+/// the way is appended to `warnings`, a line each.
+Scene build_scene(const SceneDescription& description, const BuildOptions& options,
+                  std::vector<std::string>& warnings);
+
+} // namespace rapport

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "renderer/core/params.h"
+#include "renderer/scene/camera.h"
+#include "renderer/scene/render_settings.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+// A scene as it was written down, before any mesh, image or table is read: plain data, to be
+// changed freely (size, samples, seed) before `build_scene`.
+
+namespace rapport {
+
+struct MaterialDescription {
+    std::string type = "diffuse";
+    Params params;
+    std::filesystem::path base_dir; ///< file names are relative to it
+    std::string name;               ///< of a named material, else empty
+};
+
+struct LightDescription {
+    std::string type;
+    Params params;
+    glm::mat4 to_world{1};
+};
+
+struct ShapeDescription {
+    std::string type;
+    Params params;
+    glm::mat4 to_world{1};
+    bool reverse_orientation = false;
+    std::shared_ptr<const MaterialDescription> material; ///< shared by the shapes that wear it
+    std::optional<Params> area_light;                    ///< of `AreaLightSource "diffuse"`
+};
+
+struct SceneDescription {
+    std::filesystem::path path; ///< the file it stands in; file names are relative to its folder
+    Camera camera;
+    RenderSettings settings;
+    std::vector<LightDescription> lights;
+    std::vector<ShapeDescription> shapes;
+    std::map<std::string, std::shared_ptr<const MaterialDescription>> named_materials;
+};
+
+} // namespace rapport

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "renderer/core/params.h"
+#include "renderer/core/registry.h"
+#include "renderer/scene/mesh.h"
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace rapport {
+
+/// A piece of a shape that wears one material.
+struct ShapePart {
+    TriangleMesh mesh;    ///< in the shape's own space
+    std::string material; ///< the name that the shape's file gives it, or empty
+};
+
+/// What a shape is made from.
+struct ShapeContext {
+    const Params& params;
+    std::filesystem::path base_dir; ///< file names are relative to it
+    /// Whether the part with this material name needs UVs, because a cloth lies along them.
+    std::function<bool(const std::string& material)> needs_uvs;
+    std::vector<std::string>& warnings; ///< what was ignored or mended is appended, a line each
+};
+
+using ShapeFactory = std::function<std::vector<ShapePart>(const ShapeContext&)>;
+using ShapeRegistry = Registry<ShapeFactory>;
+/// A new shape is one file with, at its end,
+///     const Registered<ShapeFactory> registered("name", make_name);
+/// Makes the shape `name`, or throws a FileError that lists the names there are, or the parameters
+/// where one is not known.
+std::vector<ShapePart> make_shape(const std::string& name, const ShapeContext& context);
+
+} // namespace rapport

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "materials/table/table_bsdf.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+
+namespace rapport {
+
+/// Gets measured tables by file name: a `.bsdf` is read; a cloth `.toml`, or a `.wif` in the
+/// built-in viscose yarns, is measured by the goniophotometer first. Each file is read or measured
+/// once.
+class TableLoader {
+  public:
+    /// Told while `path` is being measured: the accuracy reached and the finished share, [0, 1].
+    using Progress =
+        std::function<void(const std::filesystem::path& path, double accuracy, double fraction)>;
+
+    /// `accuracy` is the ε asked of a measurement.
+    explicit TableLoader(double accuracy = 0.2, uint64_t seed = 0, Progress progress = {});
+
+    std::shared_ptr<const TableBsdf> load(const std::filesystem::path& path);
+
+    /// The tables measured so far, to be kept or reported.
+    const std::map<std::filesystem::path, std::shared_ptr<const TableBsdf>>& measured() const {
+        return measured_;
+    }
+
+  private:
+    BsdfTable measure_file(const std::filesystem::path& path, const std::string& extension) const;
+
+    double accuracy_;
+    uint64_t seed_;
+    Progress progress_;
+    std::map<std::filesystem::path, std::shared_ptr<const TableBsdf>> loaded_, measured_;
+};
+
+} // namespace rapport

@@ -1,0 +1,56 @@
+#include "renderer/scene/camera.h"
+
+#include <gtest/gtest.h>
+
+namespace rapport {
+namespace {
+
+void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5f) {
+    EXPECT_LT(glm::length(a - b), tolerance) << a.x << ' ' << a.y << ' ' << a.z;
+}
+
+TEST(Camera, PerspectiveSpansTheFieldOfViewAlongTheShorterSide) {
+    Camera camera;
+    camera.fov_degrees = 60;
+    camera.resolution = {400, 200};
+    const float t = std::tan(radians(30.0f));
+    expect_near(camera.ray({200, 100}).dir, {0, 0, 1});
+    expect_near(camera.ray({200, 0}).dir, glm::normalize(glm::vec3(0, t, 1)));
+    expect_near(camera.ray({200, 200}).dir, glm::normalize(glm::vec3(0, -t, 1)));
+    expect_near(camera.ray({400, 100}).dir, glm::normalize(glm::vec3(2 * t, 0, 1)));
+    expect_near(camera.ray({0, 100}).dir, glm::normalize(glm::vec3(-2 * t, 0, 1)));
+
+    camera.resolution = {200, 400};
+    expect_near(camera.ray({200, 200}).dir, glm::normalize(glm::vec3(t, 0, 1)));
+    expect_near(camera.ray({100, 0}).dir, glm::normalize(glm::vec3(0, 2 * t, 1)));
+}
+
+TEST(Camera, OrthographicRaysAreParallel) {
+    Camera camera;
+    camera.kind = Camera::Kind::orthographic;
+    camera.screen_window = {-3, 1, -2, 5};
+    camera.resolution = {100, 50};
+    for (const auto& [pixel, origin] : {std::pair{glm::vec2(0, 0), glm::vec3(-3, 5, 0)},
+                                        {glm::vec2(100, 50), glm::vec3(1, -2, 0)},
+                                        {glm::vec2(50, 25), glm::vec3(-1, 1.5f, 0)}}) {
+        expect_near(camera.ray(pixel).org, origin);
+        expect_near(camera.ray(pixel).dir, {0, 0, 1});
+    }
+}
+
+TEST(Camera, FollowsItsTransformation) {
+    Camera camera;
+    camera.resolution = {100, 100};
+    // At (1, 2, 3), looking along −x, with y to the right in the picture and z up; scaled by 10,
+    // which changes neither the place nor the directions of a perspective.
+    camera.to_world = glm::mat4(glm::vec4(0, 10, 0, 0), glm::vec4(0, 0, 10, 0),
+                                glm::vec4(-10, 0, 0, 0), glm::vec4(1, 2, 3, 1));
+    expect_near(camera.ray({50, 50}).org, {1, 2, 3});
+    expect_near(camera.ray({50, 50}).dir, {-1, 0, 0});
+    expect_near(camera.ray({100, 50}).dir, glm::normalize(glm::vec3(-1, 1, 0)));
+    expect_near(camera.ray({50, 0}).dir, glm::normalize(glm::vec3(-1, 0, 1)));
+    EXPECT_NEAR(CameraRays(camera).depth({-4, 100, -7}), 5, 1e-4f);
+}
+
+} // namespace
+} // namespace rapport
