@@ -1,1 +1,71 @@
-int main() {}
+#include "renderer/app/commands.h"
+#include "renderer/core/error.h"
+#include "renderer/core/parallel.h"
+
+#include <algorithm>
+#include <cctype>
+#include <exception>
+#include <fmt/format.h>
+#include <fmt/std.h>
+#include <new>
+#include <unistd.h>
+
+namespace rapport {
+
+bool shows_progress(const CommonOptions& common) {
+    return !common.quiet && isatty(STDERR_FILENO) != 0;
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return std::tolower(c); });
+    return extension;
+}
+
+} // namespace rapport
+
+namespace {
+
+/// One line on standard error, whatever the message held.
+int complain(std::string message) {
+    std::ranges::replace(message, '\n', ' ');
+    fmt::print(stderr, "rapport: {}\n", message);
+    return 2;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"From a weave draft to the light on a garment.", "rapport"};
+    app.set_version_flag("--version", "rapport " RAPPORT_VERSION);
+    app.require_subcommand(1);
+    app.fallthrough();
+
+    rapport::CommonOptions common;
+    int status = 0;
+    app.add_option("--threads", common.threads, "Threads to use (default: all)")
+        ->check(CLI::Range(1, 1024));
+    app.add_option("--seed", common.seed, "Seed of all random numbers (default 0)");
+    app.add_flag("--quiet", common.quiet, "Only results and errors");
+    app.parse_complete_callback([&common] { rapport::set_thread_count(common.threads); });
+
+    rapport::add_vgsp_command(app, common);
+    rapport::add_render_command(app, common);
+    rapport::add_diff_command(app, status);
+    rapport::add_info_command(app);
+    rapport::add_export_command(app);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& request) { // --help, --version
+        return app.exit(request);
+    } catch (const CLI::ParseError& error) {
+        return complain(fmt::format("command line: {}", error.what()));
+    } catch (const std::bad_alloc&) {
+        return complain("out of memory");
+    } catch (const std::exception& error) {
+        return complain(error.what());
+    }
+    return status;
+}

@@ -1,0 +1,99 @@
+#include "renderer/app/info.h"
+#include "vgsp/cloth.h"
+#include "vgsp/micro_element.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <iterator>
+
+namespace rapport {
+namespace {
+
+/// A drawdown wider than this is told in numbers only.
+constexpr int kWidestPicture = 64;
+
+nlohmann::ordered_json draft_json(const Draft& draft, const char* kind) {
+    nlohmann::ordered_json json;
+    json["kind"] = kind;
+    json["ends"] = draft.ends;
+    json["picks"] = draft.picks;
+    json["rows"] = draft_rows(draft);
+    json["warnings"] = draft.warnings;
+    return json;
+}
+
+std::string draft_text(const Draft& draft) {
+    std::string text = fmt::format("{} ends × {} picks\n", draft.ends, draft.picks);
+    if (draft.ends <= kWidestPicture && draft.picks <= kWidestPicture)
+        for (int pick = draft.picks - 1; pick >= 0; --pick) { // pick 1 at the bottom
+            for (int end = 0; end < draft.ends; ++end)
+                text += draft.up(end, pick) ? "█" : "·";
+            text += '\n';
+        }
+    for (const std::string& warning : draft.warnings)
+        text += "warning: " + warning + '\n';
+    return text;
+}
+
+std::string yarn_text(const char* name, const YarnSpec& yarn, double per_cm, double cover,
+                      double crimp) {
+    std::string text =
+        fmt::format("{}: {} per cm, {} {} fibres of {:.4g} µm in {:.4g} × {:.4g} µm", name, per_cm,
+                    yarn.fibres, yarn.section == YarnSection::twisted ? "twisted" : "parallel",
+                    yarn.fibre.diameter_um, yarn.width_um, yarn.height_um);
+    if (yarn.twist_per_m != 0)
+        text += fmt::format(", {:.4g} turns per m {}", std::abs(yarn.twist_per_m),
+                            yarn.twist_per_m > 0 ? "Z" : "S");
+    return text + fmt::format(", cover {:.3f}, crimp {:.1f} %\n", cover, 100 * crimp);
+}
+
+} // namespace
+
+Info draft_info(const std::filesystem::path& path) {
+    const Draft draft = read_wif(path);
+    return {draft_json(draft, "draft"), "Weave draft, " + draft_text(draft)};
+}
+
+Info cloth_info(const std::filesystem::path& path) {
+    const Cloth cloth = read_cloth(path);
+    const MicroElement element = build_micro_element(cloth);
+
+    Info info;
+    info.json = draft_json(cloth.draft, "cloth");
+    info.json["name"] = cloth.name;
+    info.json["bands"] = cloth.bands.names;
+    info.json["micro_element"] = {{"cell_um", {element.fibres.cell.x, element.fibres.cell.y}},
+                                  {"repeats", {element.repeats_x, element.repeats_y}},
+                                  {"fibres", element.fibres.chains.size()},
+                                  {"segments", element.segments},
+                                  {"thickness_um", element.thickness_um},
+                                  {"cover_warp", element.warp_cover},
+                                  {"cover_weft", element.weft_cover},
+                                  {"cover_factor", element.cover_factor},
+                                  {"crimp_warp", element.crimp_warp},
+                                  {"crimp_weft", element.crimp_weft},
+                                  {"twist_rounding_warp", element.twist_rounding_warp},
+                                  {"twist_rounding_weft", element.twist_rounding_weft},
+                                  {"overlap_fraction", element.overlap_fraction}};
+
+    info.text =
+        fmt::format("Cloth \"{}\", bands {}\n", cloth.name, fmt::join(cloth.bands.names, ", ")) +
+        draft_text(cloth.draft) +
+        yarn_text("warp", cloth.warp, cloth.ends_per_cm, element.warp_cover, element.crimp_warp) +
+        yarn_text("weft", cloth.weft, cloth.picks_per_cm, element.weft_cover, element.crimp_weft);
+    fmt::format_to(std::back_inserter(info.text),
+                   "micro-element: {:.4g} × {:.4g} µm, {:.4g} µm thick, {} fibres, {} segments, "
+                   "cover factor {:.3f}, {:.2f} % of the fibre surface overlaps\n",
+                   element.fibres.cell.x, element.fibres.cell.y, element.thickness_um,
+                   element.fibres.chains.size(), element.segments, element.cover_factor,
+                   100 * element.overlap_fraction);
+    if (element.twist_rounding_warp != 0 || element.twist_rounding_weft != 0)
+        fmt::format_to(std::back_inserter(info.text),
+                       "twist rounded by {:+.2f} % (warp), {:+.2f} % (weft) to close over {} × {} "
+                       "repeats\n",
+                       100 * element.twist_rounding_warp, 100 * element.twist_rounding_weft,
+                       element.repeats_x, element.repeats_y);
+    return info;
+}
+
+} // namespace rapport

@@ -1,0 +1,165 @@
+#include "renderer/app/commands.h"
+#include "renderer/core/error.h"
+#include "renderer/core/progress.h"
+#include "renderer/integrator/path_tracer.h"
+#include "renderer/scene/model_scene.h"
+#include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/scene_builder.h"
+#include "renderer/scene/table_loader.h"
+
+#include <chrono>
+#include <fmt/format.h>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+namespace rapport {
+namespace {
+
+struct RenderOptions {
+    std::string scene, size;
+    std::vector<std::string> cloths, outputs;
+    int samples = 0; ///< 0 = as the scene says
+    double accuracy = 0.2;
+};
+
+glm::ivec2 parse_size(const std::string& text) {
+    constexpr int kLargest = 32768;
+    int width = 0, height = 0, used = 0;
+    if (std::sscanf(text.c_str(), "%6dx%6d%n", &width, &height, &used) != 2 ||
+        used != static_cast<int>(text.size()) || width < 1 || height < 1 || width > kLargest ||
+        height > kLargest)
+        throw FileError("command line", "--size",
+                        fmt::format("WIDTHxHEIGHT, each 1 to {}", kLargest), text);
+    return {width, height};
+}
+
+/// "CLOTH" or "MATERIAL=CLOTH".
+std::map<std::string, std::filesystem::path> parse_cloths(const std::vector<std::string>& texts) {
+    std::map<std::string, std::filesystem::path> cloths;
+    for (const std::string& text : texts) {
+        const size_t equals = text.find('=');
+        const std::string material = equals == std::string::npos ? "" : text.substr(0, equals);
+        const std::string file = equals == std::string::npos ? text : text.substr(equals + 1);
+        if (file.empty() || !cloths.emplace(material, file).second)
+            throw FileError("command line", "--cloth", "one cloth file per material", text);
+    }
+    return cloths;
+}
+
+SceneDescription describe(const RenderOptions& options, const CommonOptions& common) {
+    constexpr glm::ivec2 kModelSize{1024, 1024};
+    const std::string extension = lower_extension(options.scene);
+    const bool model = extension == ".gltf" || extension == ".glb";
+    if (!model && extension != ".pbrt")
+        throw FileError(options.scene, "", "a scene (.pbrt) or model (.gltf, .glb)",
+                        "another ending");
+    SceneDescription description =
+        model ? describe_model(options.scene, kModelSize) : parse_pbrt(options.scene);
+    if (!options.size.empty())
+        description.camera.resolution = parse_size(options.size);
+    if (options.samples > 0)
+        description.settings.samples = options.samples;
+    description.settings.seed = common.seed;
+    return description;
+}
+
+/// The files to write; their endings are checked before any work is done.
+std::vector<std::filesystem::path> outputs(const RenderOptions& options,
+                                           const std::string& of_scene) {
+    std::vector<std::filesystem::path> paths(options.outputs.begin(), options.outputs.end());
+    if (paths.empty())
+        paths.push_back(
+            of_scene.empty()
+                ? std::filesystem::path(options.scene).filename().replace_extension(".exr")
+                : std::filesystem::path(of_scene));
+    for (const std::filesystem::path& path : paths)
+        if (lower_extension(path) != ".exr" && lower_extension(path) != ".png")
+            throw FileError(path.string(), "", "an output that ends in .exr or .png",
+                            "another ending");
+    return paths;
+}
+
+Scene load(const RenderOptions& options, const CommonOptions& common,
+           const SceneDescription& description) {
+    std::optional<ProgressLine> line;
+    TableLoader tables(options.accuracy, common.seed,
+                       [&](const std::filesystem::path& path, double accuracy, double fraction) {
+                           if (!shows_progress(common))
+                               return;
+                           if (!line)
+                               line.emplace(std::cerr, "measuring " + path.filename().string());
+                           line->update(fraction, fmt::format("accuracy {:.4f}", accuracy));
+                       });
+    std::vector<std::string> warnings;
+    BuildOptions build{parse_cloths(options.cloths),
+                       [&](const std::filesystem::path& path) { return tables.load(path); }};
+    Scene scene = build_scene(description, build, warnings);
+    line.reset();
+    if (common.quiet)
+        return scene;
+    for (const std::string& warning : warnings)
+        fmt::print(stderr, "warning: {}\n", warning);
+    for (const auto& [path, table] : tables.measured())
+        fmt::print("{}: measured to accuracy {:.4f} on {} bins\n", path.string(),
+                   table->table().largest_accuracy(), 2 * table->table().exits.bins());
+    return scene;
+}
+
+void run(const RenderOptions& options, const CommonOptions& common) {
+    const SceneDescription description = describe(options, common);
+    const std::vector<std::filesystem::path> paths = outputs(options, description.settings.output);
+    const Scene scene = load(options, common, description);
+
+    std::optional<ProgressLine> line;
+    if (shows_progress(common))
+        line.emplace(std::cerr, "rendering");
+    const auto start = std::chrono::steady_clock::now();
+    Image image = render(scene, [&](double fraction) {
+        if (line)
+            line->update(fraction, fmt::format("{} samples", scene.settings.samples));
+    });
+    line.reset();
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+    std::string command = "rapport render " + options.scene;
+    for (const std::string& cloth : options.cloths)
+        command += " --cloth " + cloth;
+    image.attributes["command"] = command;
+    image.attributes["seed"] = std::to_string(common.seed);
+    image.attributes["samples"] = std::to_string(scene.settings.samples);
+    image.attributes["seconds"] = fmt::format("{:.3f}", seconds);
+    for (const std::filesystem::path& path : paths) {
+        if (lower_extension(path) == ".exr")
+            write_exr(image, path);
+        else
+            write_png(image, path);
+        if (!common.quiet)
+            fmt::print("{}: {} x {}, {} samples a pixel, {:.1f} s\n", path.string(), image.width,
+                       image.height, scene.settings.samples, seconds);
+    }
+}
+
+} // namespace
+
+void add_render_command(CLI::App& app, const CommonOptions& common) {
+    const auto options = std::make_shared<RenderOptions>();
+    CLI::App* command = app.add_subcommand("render", "Render a scene, or a model in a cloth");
+    command->add_option("scene", options->scene, "Scene .pbrt, or model .gltf or .glb")->required();
+    command->add_option("-o,--output", options->outputs,
+                        "Image to write, .exr or .png (repeatable; default: as the scene says)");
+    command->add_option("--cloth", options->cloths,
+                        "Cloth (.bsdf, .toml or .wif) for every glTF material, or as "
+                        "MATERIAL=CLOTH for one (repeatable)");
+    command->add_option("--spp", options->samples, "Samples per pixel")
+        ->check(CLI::Range(1, 1 << 24));
+    command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels");
+    command
+        ->add_option("--accuracy", options->accuracy,
+                     "Accuracy of a cloth that is measured on the way (default 0.2)")
+        ->check(CLI::PositiveNumber);
+    command->callback([options, &common] { run(*options, common); });
+}
+
+} // namespace rapport
