@@ -2,19 +2,12 @@
 
 #include "materials/table/bsdf_table.h"
 #include "renderer/kernel/fibre_tracer.h"
+#include "vgsp/fibre_step.h"
 
 #include <functional>
 #include <span>
-#include <vector>
 
 namespace rapport {
-
-/// Optics of one kind of fibre (FibreChain::kind).
-struct FibreOptics {
-    double refractive_index = 1.5;
-    std::vector<double> absorption_per_um; ///< per band
-    double surface_absorption = 0;         ///< share lost at each boundary event
-};
 
 struct GoniophotometerSettings {
     double accuracy = 0.2;  ///< the ε asked for (design: RMS error over the mean, per direction)
@@ -32,9 +25,11 @@ struct GoniophotometerProgress {
     double paths_per_second;
 };
 
-/// Where the paths of one run went, over all incident directions.
+/// Where the paths of one run went, over all incident directions; the pilot's are not in it.
 struct GoniophotometerCounts {
-    uint64_t paths = 0, events = 0, overlaps = 0, capped = 0;
+    uint64_t paths = 0, events = 0, overlaps = 0;
+    uint64_t capped = 0; ///< out of events
+    uint64_t lost = 0;   ///< of these, lost among the fibres (FibreTracer::Flight::lost)
 };
 
 /// Measures the scattering of any periodic assembly of fibres for the incident directions and
@@ -42,6 +37,15 @@ struct GoniophotometerCounts {
 /// and paths arrays are filled). `optics` is indexed by FibreChain::kind. Path k of direction d
 /// depends on (seed, d, k) alone, so the result does not depend on the threads. Light of every
 /// path is accounted for as reflected, transmitted, unscattered, absorbed or capped.
+///
+/// How many paths a direction gets is fixed before they are traced, by a pilot whose own paths are
+/// thrown away: to stop when the estimate looks good would make it look better than it is. The
+/// pilot's three-sigma bound on its variance is what is planned for, so that ε seldom ends above
+/// what was asked; where it does, it is reported as it is. Only `max_seconds` makes the result
+/// depend on the machine; the first increment (at least one batch of each direction) is made even
+/// if the time is up.
+///
+/// Throws std::invalid_argument for optics or settings outside their domain.
 GoniophotometerCounts
 measure(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
         const GoniophotometerSettings& settings, BsdfTable& table,

@@ -5,6 +5,8 @@
 #include "vgsp/goniophotometer.h"
 #include "vgsp/micro_element.h"
 
+#include <functional>
+
 namespace rapport {
 
 struct MeasureOptions {
@@ -20,7 +22,9 @@ struct ClothMeasurement {
     GoniophotometerCounts counts;
 };
 
-/// cloth → micro-element → (colours solved for absorption) → table.
+/// cloth → micro-element → (colours solved for absorption) → table, with everything that decides
+/// the result in its metadata. One seed serves the fibres' dither, the colours and the paths.
+/// FileError (at the cloth's path) for a cloth that cannot exist, or a colour out of reach.
 ClothMeasurement
 measure_cloth(const Cloth& cloth, const MeasureOptions& options,
               const std::function<void(const GoniophotometerProgress&)>& progress = {});

@@ -118,7 +118,7 @@ TEST(TensorFile, EveryTruncationIsAnError) {
     write_tensor_file(fields, folder / "whole");
     const std::string whole = read_bytes(folder / "whole");
     ASSERT_GT(whole.size(), 200u);
-    for (size_t length = 0; length < whole.size(); length += length + 8 < whole.size() ? 2 : 1)
+    for (size_t length = 0; length < whole.size(); ++length)
         EXPECT_NE(error_of(whole.substr(0, length)), "") << length;
     EXPECT_EQ(error_of(whole), "");
 }
@@ -155,13 +155,13 @@ TEST(TensorFile, FlippedBytesNeverCrash) {
     const std::string whole = read_bytes(folder / "whole");
     CounterRng rng(1, Purpose::test, 0, 0);
     int errors = 0;
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 2000; ++i) {
         std::string bytes = whole;
         for (int flips = 0; flips < 3; ++flips)
             bytes[rng.bits() % bytes.size()] = static_cast<char>(rng.bits());
         errors += !error_of(bytes).empty();
     }
-    EXPECT_GT(errors, 150);
+    EXPECT_GT(errors, 500);
 }
 
 TEST(TensorFile, PlacesThatCannotBeReadOrWritten) {

@@ -1,0 +1,71 @@
+#include "vgsp/colour_solver.h"
+
+#include "renderer/core/parallel.h"
+#include "vgsp/incident_path.h"
+
+namespace rapport {
+namespace {
+
+constexpr size_t kPaths = 1 << 16;
+constexpr size_t kBatchPaths = 1024;
+constexpr double kGreatestAbsorption = 1e4; ///< [1/µm]: ten thousand times what hides a fibre
+
+/// Cosine-weighted, from the face side.
+IncidentDirection diffuse_direction(CounterRng& rng) {
+    const double sin_theta = std::sqrt(rng.uniform());
+    return {Side::front, std::asin(sin_theta), 2 * kPi * rng.uniform()};
+}
+
+} // namespace
+
+ColourSolver::ColourSolver(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
+                           int max_events, uint64_t seed) {
+    // Two bands tell length from surface: only the first is absorbed, by 1 per µm.
+    std::vector<FibreOptics> probe(optics.begin(), optics.end());
+    for (FibreOptics& kind : probe)
+        kind.absorption_per_um = {1, 0};
+    const std::vector<FibreMedium> media = fibre_media(probe, 2, tracer);
+    const IncidentPathTracer tracing{tracer, media, 2, max_events, false};
+    std::vector<std::vector<WhitePath>> batches(kPaths / kBatchPaths);
+    parallel_for(batches.size(), [&](size_t batch) {
+        IncidentPath path;
+        for (size_t k = batch * kBatchPaths; k < (batch + 1) * kBatchPaths; ++k) {
+            CounterRng rng(seed, Purpose::colour_solve, 0, k);
+            const IncidentDirection incident = diffuse_direction(rng);
+            tracing.trace(incident, rng, path);
+            if (path.fate != PathFate::scattered)
+                continue;
+            const double surface = path.light.optical_depth[1];
+            const double weight = std::exp(-surface);
+            batches[batch].push_back(
+                {weight > 0 ? path.light.optical_depth[0] - surface : 0.0, weight});
+        }
+    });
+    for (const std::vector<WhitePath>& batch : batches)
+        paths_.insert(paths_.end(), batch.begin(), batch.end());
+}
+
+double ColourSolver::albedo(double absorption_per_um) const {
+    double sum = 0;
+    for (const WhitePath& path : paths_)
+        sum += path.weight * std::exp(-absorption_per_um * path.length);
+    return paths_.empty() ? 1.0 : sum / static_cast<double>(paths_.size());
+}
+
+double ColourSolver::least_albedo() const { return albedo(kGreatestAbsorption); }
+
+std::optional<double> ColourSolver::absorption_for(double wanted) const {
+    if (!(wanted <= greatest_albedo() && wanted >= least_albedo()))
+        return std::nullopt;
+    if (wanted == greatest_albedo())
+        return 0.0;
+    // The albedo falls steadily; bisection in the logarithm after a bracket is found.
+    double low = 1e-9, high = kGreatestAbsorption;
+    for (int step = 0; step < 60; ++step) {
+        const double middle = std::sqrt(low * high);
+        (albedo(middle) > wanted ? low : high) = middle;
+    }
+    return std::sqrt(low * high);
+}
+
+} // namespace rapport

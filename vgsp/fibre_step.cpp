@@ -1,0 +1,29 @@
+#include "vgsp/fibre_step.h"
+
+#include <stdexcept>
+
+namespace rapport {
+
+std::vector<FibreMedium> fibre_media(std::span<const FibreOptics> optics, size_t bands,
+                                     const kernel::FibreTracer& tracer) {
+    std::vector<FibreMedium> media;
+    for (const FibreOptics& kind : optics) {
+        if (!(kind.refractive_index >= 1) || !std::isfinite(kind.refractive_index))
+            throw std::invalid_argument("a fibre's refractive index is below 1");
+        if (!(kind.surface_absorption >= 0 && kind.surface_absorption <= 1))
+            throw std::invalid_argument("a fibre's surface absorption is outside [0, 1]");
+        if (kind.absorption_per_um.size() != bands)
+            throw std::invalid_argument("a fibre's absorption is not given once per band");
+        for (const double absorption : kind.absorption_per_um)
+            if (!(absorption >= 0) || !std::isfinite(absorption))
+                throw std::invalid_argument("a fibre's absorption is negative");
+        media.push_back(
+            {kind.refractive_index, -std::log1p(-kind.surface_absorption), kind.absorption_per_um});
+    }
+    for (const kernel::FibreSegment& segment : tracer.segments())
+        if (segment.kind >= media.size())
+            throw std::invalid_argument("a fibre's kind has no optics");
+    return media;
+}
+
+} // namespace rapport
