@@ -46,12 +46,16 @@ Scene::Scene(std::vector<Surface> surfaces, std::vector<std::shared_ptr<Light>> 
         if (surface.area_light)
             all.push_back(surface.area_light.get());
     double total = 0;
-    for (const Light* light : all)
+    size_t shining = 0;
+    for (const Light* light : all) {
         total += light->power();
+        shining += light->power() > 0;
+    }
     for (size_t i = 0; i < all.size(); ++i) {
         if (!(all[i]->power() > 0))
             continue;
-        const LightChoice choice{all[i], static_cast<float>(all[i]->power() / total)};
+        const double probability = 0.5 * (1.0 / shining + all[i]->power() / total);
+        const LightChoice choice{all[i], static_cast<float>(probability)};
         choices_.push_back(choice);
         probability_[all[i]] = choice.probability;
         if (i < lights_.size())

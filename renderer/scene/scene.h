@@ -52,7 +52,9 @@ class Scene {
 
     const std::vector<Surface>& surfaces() const { return surfaces_; }
 
-    /// Picks a light by power; `probability` is that of the choice. Nothing if all is dark.
+    /// Picks a light, half of the times by power and half uniformly: a sky over a wide scene has so
+    /// much power that the lamp beside a garment would hardly ever be chosen by it. `probability`
+    /// is that of the choice. Nothing if all is dark.
     struct LightChoice {
         const Light* light;
         float probability;

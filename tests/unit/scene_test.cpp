@@ -133,17 +133,17 @@ TEST(SceneTransmittance, MultipliesTheLayers) {
     EXPECT_EQ(passed(scene_of(surfaces), below, 1, 10), 0);
 }
 
-TEST(SceneLights, AreChosenByPower) {
+TEST(SceneLights, AreChosenHalfByPowerAndHalfUniformly) {
     std::vector<Surface> surfaces{tests::surface(level_square(1, 0), tests::diffuse(0), 3),
                                   tests::surface(level_square(1, 5), tests::diffuse(0), 1),
                                   tests::surface(level_square(1, 7), tests::diffuse(0), 0)};
     surfaces[1].two_sided_emission = true;
     const Scene scene = scene_of(std::move(surfaces));
     EXPECT_EQ(scene.surfaces()[2].area_light, nullptr);
-    EXPECT_NEAR(scene.choice_probability(*scene.surfaces()[0].area_light), 0.6f, 1e-6f);
-    EXPECT_NEAR(scene.choice_probability(*scene.surfaces()[1].area_light), 0.4f, 1e-6f);
-    EXPECT_EQ(scene.choose_light(0.59f)->light, scene.surfaces()[0].area_light.get());
-    EXPECT_EQ(scene.choose_light(0.61f)->light, scene.surfaces()[1].area_light.get());
+    EXPECT_NEAR(scene.choice_probability(*scene.surfaces()[0].area_light), 0.55f, 1e-6f);
+    EXPECT_NEAR(scene.choice_probability(*scene.surfaces()[1].area_light), 0.45f, 1e-6f);
+    EXPECT_EQ(scene.choose_light(0.54f)->light, scene.surfaces()[0].area_light.get());
+    EXPECT_EQ(scene.choose_light(0.56f)->light, scene.surfaces()[1].area_light.get());
     EXPECT_FALSE(scene_of({}).choose_light(0.5f));
 }
 
