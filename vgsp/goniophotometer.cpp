@@ -5,15 +5,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numbers>
 #include <stdexcept>
 
 namespace rapport {
 namespace {
 
 constexpr uint64_t kBatchPaths = 1024;
-constexpr uint64_t kPilotPaths = 1024;      ///< per direction, and twice as many again …
-constexpr uint64_t kMostPilotPaths = 32768; ///< … up to this, …
-constexpr double kPilotUncertainty = 0.1;   ///< … until the error is known this well
+constexpr uint64_t kPilotPaths = 1024; ///< per direction, and twice as many again while it pays, …
+constexpr uint64_t kMostPilotPaths = 32768; ///< … up to this
 constexpr double kPlannedSigmas = 3;
 constexpr uint64_t kMostPaths = uint64_t{1} << 40;
 constexpr uint64_t kFirstPilotPath = kMostPaths;   ///< the pilot's numbers come after all others
@@ -58,6 +58,14 @@ class Run {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Whether twice the pilot costs fewer paths than it takes off the plan: the margin for the pilot's
+/// uncertainty shrinks by √2.
+bool larger_pilot_pays(const PathTally& pilot, double accuracy) {
+    const double margin =
+        kPlannedSigmas * pilot.uncertainty() * pilot.error_of_one_path() / square(accuracy);
+    return static_cast<double>(pilot.counts().paths) < (1 - std::numbers::sqrt2 / 2) * margin;
+}
+
 std::vector<uint64_t> Run::plan() const {
     const uint64_t most = settings_.max_paths > 0 ? settings_.max_paths : kMostPaths;
     std::vector<uint64_t> planned(table_.directions(), most);
@@ -70,8 +78,8 @@ std::vector<uint64_t> Run::plan() const {
         for (size_t d = 0; d < pilots.size(); ++d) {
             const uint64_t done = pilots[d].counts().paths;
             const uint64_t until = std::max(kPilotPaths, 2 * done);
-            if (done == 0 || (pilots[d].uncertainty() > kPilotUncertainty &&
-                              until <= std::min(kMostPilotPaths, most)))
+            if (done == 0 || (until <= std::min(kMostPilotPaths, most) &&
+                              larger_pilot_pays(pilots[d], settings_.accuracy)))
                 for (uint64_t k = done; k < until; k += kBatchPaths)
                     tasks.push_back({d, kFirstPilotPath + k, kBatchPaths});
         }

@@ -6,9 +6,10 @@
 #include <cctype>
 #include <exception>
 #include <fmt/format.h>
-#include <fmt/std.h>
+#include <fmt/ranges.h>
 #include <new>
 #include <unistd.h>
+#include <vector>
 
 namespace rapport {
 
@@ -32,6 +33,16 @@ int complain(std::string message) {
     std::ranges::replace(message, '\n', ' ');
     fmt::print(stderr, "rapport: {}\n", message);
     return 2;
+}
+
+/// What to say where the command line names no subcommand.
+std::string missing_command(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    const std::vector<std::string> rest = app.remaining();
+    return fmt::format("command line: expected one of {}, found {}", fmt::join(names, ", "),
+                       rest.empty() ? "none" : rest.front());
 }
 
 } // namespace
@@ -61,6 +72,8 @@ int main(int argc, char** argv) {
     } catch (const CLI::Success& request) { // --help, --version
         return app.exit(request);
     } catch (const CLI::ParseError& error) {
+        if (dynamic_cast<const CLI::RequiredError*>(&error) && app.get_subcommands().empty())
+            return complain(missing_command(app));
         return complain(fmt::format("command line: {}", error.what()));
     } catch (const std::bad_alloc&) {
         return complain("out of memory");

@@ -1,5 +1,7 @@
 #include "materials/table/bsdf_table.h"
 #include "renderer/app/commands.h"
+#include "renderer/app/scan_files.h"
+#include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/core/progress.h"
 #include "vgsp/measure_cloth.h"
@@ -16,6 +18,7 @@ namespace {
 struct VgspOptions {
     std::string cloth, draft, output, side = "both";
     std::vector<std::string> incidence;
+    std::vector<double> planes, theta_in;
     GoniophotometerSettings settings;
 };
 
@@ -53,38 +56,78 @@ MeasureOptions measure_options(const VgspOptions& options, const CommonOptions& 
     return measure;
 }
 
+/// --plane and --theta-in: plane by plane, and in each the angles in the order asked for.
+std::vector<IncidentDirection> scan_incidence(const VgspOptions& options) {
+    std::vector<IncidentDirection> incident;
+    for (const Side side : {Side::front, Side::back})
+        if (side == Side::front ? options.side != "back" : options.side != "front")
+            for (const double plane : options.planes)
+                for (const double theta : options.theta_in)
+                    incident.push_back({side, radians(theta), radians(plane)});
+    return incident;
+}
+
+/// OUT.csv and OUT.svg, whichever of the two `output` names.
+void scan(const Cloth& cloth, const std::filesystem::path& output, const VgspOptions& options,
+          const GoniophotometerSettings& settings,
+          const std::function<void(const GoniophotometerProgress&)>& watch, bool quiet) {
+    const std::string extension = lower_extension(output);
+    if (extension != ".csv" && extension != ".svg")
+        throw FileError("command line", "--output", "a .csv or .svg for a scan", output.string());
+    const MicroElement element = build_micro_element(cloth, {.seed = settings.seed});
+    const kernel::FibreTracer tracer(element.fibres);
+    const std::vector<PlaneScan> scans =
+        scan_planes(tracer, cloth_optics(cloth, tracer, settings), cloth.bands,
+                    scan_incidence(options), settings, watch);
+    double accuracy = 0;
+    for (const PlaneScan& each : scans)
+        accuracy = std::max(accuracy, each.accuracy);
+    for (const auto& [name, text] :
+         {std::pair(".csv", scan_csv(scans)), {".svg", scan_svg(scans)}}) {
+        std::filesystem::path path = output;
+        path.replace_extension(name);
+        write_stream_atomically(path, [&](std::ofstream& stream) { stream << text; });
+        if (!quiet)
+            fmt::print("{}: accuracy {:.4f} on {} angles of exit, {} incident directions\n",
+                       path.string(), accuracy, 2 * PlaneScan::kAngles, scans.size());
+    }
+}
+
 void run(const VgspOptions& options, const CommonOptions& common) {
     const std::filesystem::path path = options.cloth;
     const MeasureOptions measure = measure_options(options, common);
     const bool bare_draft = lower_extension(path) == ".wif";
     if (bare_draft && !options.draft.empty())
         throw FileError("command line", "--draft", "a cloth .toml to weave it with", path.string());
-    if (bare_draft && !common.quiet)
-        fmt::print(stderr, "{}: a draft alone; woven as the built-in viscose cloth\n",
-                   path.string());
     const Cloth cloth =
         bare_draft ? viscose_cloth(path)
                    : read_cloth(path, options.draft.empty()
                                           ? std::nullopt
                                           : std::optional<std::filesystem::path>(options.draft));
+    if (bare_draft && !common.quiet)
+        fmt::print(stderr, "{}: a draft alone; woven as the built-in viscose cloth\n",
+                   path.string());
     if (!common.quiet)
         for (const std::string& warning : cloth.draft.warnings)
             fmt::print(stderr, "warning: {}\n", warning);
 
-    const std::filesystem::path output = options.output.empty()
-                                             ? path.filename().replace_extension(".bsdf")
-                                             : std::filesystem::path(options.output);
+    const bool scanning = !options.planes.empty();
+    const std::filesystem::path output =
+        options.output.empty() ? path.filename().replace_extension(scanning ? ".csv" : ".bsdf")
+                               : std::filesystem::path(options.output);
     std::optional<ProgressLine> line;
     if (shows_progress(common))
         line.emplace(std::cerr, "measuring");
-    const ClothMeasurement result =
-        measure_cloth(cloth, measure, [&](const GoniophotometerProgress& progress) {
-            if (line)
-                line->update(progress.fraction,
-                             fmt::format("accuracy {:.4f}, {:.0f} k paths/s", progress.accuracy,
-                                         1e-3 * progress.paths_per_second),
-                             progress.seconds_left);
-        });
+    const auto watch = [&](const GoniophotometerProgress& progress) {
+        if (line)
+            line->update(progress.fraction,
+                         fmt::format("accuracy {:.4f}, {:.0f} k paths/s", progress.accuracy,
+                                     1e-3 * progress.paths_per_second),
+                         progress.seconds_left);
+    };
+    if (scanning)
+        return scan(cloth, output, options, measure.goniophotometer, watch, common.quiet);
+    const ClothMeasurement result = measure_cloth(cloth, measure, watch);
     line.reset();
     write_table(result.table, output);
     if (common.quiet)
@@ -111,8 +154,26 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
                      "RMS error of the intensity distribution over its mean, per incident "
                      "direction (default 0.02)")
         ->check(CLI::PositiveNumber);
-    command->add_option("--incidence", options->incidence,
-                        "Measure only this direction of light, THETA,PHI in degrees (repeatable)");
+    CLI::Option* const incidence = command->add_option(
+        "--incidence", options->incidence,
+        "Measure only this direction of light, THETA,PHI in degrees (repeatable)");
+    incidence->allow_extra_args(false);
+    CLI::Option* const plane =
+        command
+            ->add_option("--plane", options->planes,
+                         "Scan only the plane of light from this azimuth, in degrees (repeatable): "
+                         "intensity over the angle of exit, to a .csv and an .svg")
+            ->allow_extra_args(false)
+            ->check(CLI::Range(0.0, 360.0))
+            ->excludes(incidence);
+    CLI::Option* const theta_in =
+        command
+            ->add_option("--theta-in", options->theta_in,
+                         "Polar angle of the light in a scan, in degrees (repeatable)")
+            ->allow_extra_args(false)
+            ->check(CLI::Range(0.0, 89.9))
+            ->needs(plane);
+    plane->needs(theta_in);
     command->add_option("--side", options->side, "Side the light arrives on (default both)")
         ->check(CLI::IsMember({"front", "back", "both"}));
     command->add_option("--max-rays", options->settings.max_paths,
