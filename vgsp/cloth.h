@@ -24,15 +24,30 @@
 //   weft.picks_per_cm    1/cm  (0, 1000]                         sett of the weft
 //
 //   In [warp] and in [weft], of the yarn:
-//   section                    "parallel", "twisted"             how its fibres lie
-//   fibres                     whole, 1 … 10 000                 number of fibres in the section
+//   section                    "parallel", "twisted",            how its fibres lie
+//                              "plied"
+//   fibres                     whole, 1 … 10 000       -         number of fibres in the section
+//   tex                  g/km  (0, 10 000]             -         of the yarn: as many fibres as
+//   weigh
+//                                                                it (exactly one of these two)
 //   width_um, height_um  µm    (0, 10 000]                       parallel: axes of the ellipse
-//   diameter_um          µm    (0, 10 000]                       twisted: of the circle
-//   twist_per_m          1/m   [−100 000, 100 000]               twisted: turns; + is Z, − is S
+//   diameter_um          µm    (0, 10 000]                       else: of the circle
+//   twist_per_m          1/m   [−100 000, 100 000]               else: turns; + is Z, − is S
+//   plies                      whole, 2 … 6                      plied: number of singles, of each
+//                                                                of which the keys above tell
+//   ply_twist_per_m      1/m   [−100 000, 100 000]               plied: turns; + is Z, − is S
 //   flatten                    (0, 1]                  1         see YarnSpec
+//   migration_um         µm    [0, 100]                0         see Irregularity
+//   deviation_degrees    °     [0, 30]                 0         see Irregularity
+//   spacing_jitter_um    µm    [0, 100]                0         see Irregularity
+//   stray_fibres               [0, 1]                  0         see Irregularity
 //
 //   In [warp.fibre] and in [weft.fibre]:
-//   diameter_um          µm    (0, 1000]                         of the round fibre
+//   diameter_um          µm    (0, 1000]               -         of the round fibre
+//   dtex                 dg/km (0, 10 000]             -         its fineness instead, with density
+//                                                                (exactly one of these two)
+//   density_g_cm3        g/cm³ (0, 25]                 optional  needed by dtex, tex and for mass
+//   diameter_variation         [0, 0.3]                0         see FibreSpec
 //   refractive_index           [1, 4]                            the same in all bands
 //   absorption_per_um    1/µm  0 or more               0         per band, or one for all bands
 //   color                      [0, 1)                  optional  per band, instead of absorption
@@ -43,6 +58,10 @@ namespace rapport {
 /// The dielectric fibres of a yarn.
 struct FibreSpec {
     double diameter_um = 0;
+    std::optional<double> density_g_cm3;
+    /// Coefficient of variation of the diameter from fibre to fibre: standard deviation over mean
+    /// of a normal distribution cut off at three standard deviations.
+    double diameter_variation = 0;
     double refractive_index = 0;
     /// Volume absorption per band [1/µm], Beer–Lambert. At most one of this and `color` is given;
     /// neither means clear fibres.
@@ -56,20 +75,48 @@ struct FibreSpec {
     bool operator==(const FibreSpec&) const = default;
 };
 
+/// Fineness [dtex: grams per 10 km] of a round fibre and its diameter [µm]: d = 20·√(dtex/(π·ρ)), ρ
+/// the density [g/cm³] (W. E. Morton, J. W. S. Hearle, Physical Properties of Textile Fibres).
+double fibre_diameter_um(double dtex, double density_g_cm3);
+double fibre_dtex(double diameter_um, double density_g_cm3);
+
+/// How a yarn's fibres depart from the perfect arrangement (the paper, section 6). All zero: not at
+/// all. Each is drawn anew for every yarn of the cell, from the micro-element's seed.
+struct Irregularity {
+    /// Standard deviation, across and up, of a fibre's wandering from its place along the yarn, and
+    /// that of its tangent's angle. Both or neither are zero: the wandering is a Gaussian process
+    /// of autocorrelation exp(−s²/2ℓ²), so their ratio is its correlation length ℓ along the yarn.
+    double migration_um = 0, deviation_degrees = 0;
+    double spacing_jitter_um = 0; ///< standard deviation, per direction, of the fibres' places
+    /// Share of the fibres at the yarn's surface that leave it in loops, where they are not held
+    /// down by the crossed yarns.
+    double stray_fibres = 0;
+
+    /// ℓ [µm]; infinite without migration.
+    double correlation_length_um() const;
+    bool operator==(const Irregularity&) const = default;
+};
+
 enum class YarnSection {
     parallel, ///< fibres parallel to the yarn axis, elliptic section
     twisted,  ///< fibres wound round the axis, circular section
+    plied,    ///< twisted yarns ("singles") side by side wound round the axis
 };
 
 struct YarnSpec {
     YarnSection section = YarnSection::parallel;
-    int fibres = 0;         ///< number of fibres in the section
-    double width_um = 0;    ///< of the section in the plane of the cloth, before flattening
+    int fibres = 0;         ///< number of fibres in the section, or in that of a single
+    double width_um = 0;    ///< of that section in the plane of the cloth, before flattening
     double height_um = 0;   ///< across it; equal to the width for twisted yarns
     double twist_per_m = 0; ///< turns per metre of yarn axis; + = Z, − = S
+    int plies = 1;          ///< number of singles; 1 unless plied
+    /// Turns of the singles round each other. `twist_per_m` is theirs as they were spun, to which
+    /// plying adds its own: so a Z single plied S loses twist, as it does on the machine.
+    double ply_twist_per_m = 0;
     /// Height of the flattened section over the original height, (0, 1]; the width grows by its
     /// inverse, and the fibres' own sections stay round.
     double flatten = 1;
+    Irregularity irregularity;
     FibreSpec fibre;
 
     bool operator==(const YarnSpec&) const = default;

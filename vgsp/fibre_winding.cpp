@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace rapport {
 namespace {
 
 using glm::dvec3;
+
+constexpr int kMostRefinement = 64; ///< beyond which a curve cannot be smooth
 
 double angle_between(const dvec3& a, const dvec3& b) {
     return std::atan2(length(cross(a, b)), dot(a, b));
@@ -51,15 +54,31 @@ std::vector<double> joint_measure(const ClosedCurve& curve, const JointSpacing& 
 
 } // namespace
 
-dvec3 PlacedYarn::fibre_point(const glm::dvec2& position, double phase, double s) const {
-    const bool wound = twist != 0;
+dvec3 PlacedYarn::fibre_point(const FibreSite& fibre, double s) const {
+    const bool wound = twist != 0 || ply_twist != 0 || !migration.empty() || fibre.loop.height > 0;
     const YarnAxis::Point axis_point = axis->at(s);
     const double slope =
         wound ? axis->mean_slope(s, section->outline.half_height) : axis_point.slope;
-    const glm::dvec2 p = section->place(position, phase + twist * s);
+    glm::dvec2 p = section->place(fibre.position, fibre.turns[0].in_single + twist * s,
+                                  fibre.turns[0].in_ply + ply_twist * s);
+    if (!migration.empty())
+        p += migration.at(p, s);
+    if (fibre.loop.height > 0)
+        p += stray(fibre.loop, p, s, axis_point.height);
     const dvec3 up(0, 0, 1);
     return origin + (axis_point.along - std::sin(slope) * p.y) * direction +
            (axis_point.height + std::cos(slope) * p.y) * up + p.x * cross(direction, up);
+}
+
+glm::dvec2 PlacedYarn::stray(const StrayLoop& loop, const glm::dvec2& p, double s,
+                             double height) const {
+    const double distance = length(p);
+    const double facing_out = height * p.y / (crest * distance);
+    if (crest == 0 || !(facing_out > 0))
+        return glm::dvec2(0);
+    const glm::dvec2 size(section->outline.half_width, section->outline.half_height);
+    const double outside = glm::smoothstep(0.5, 0.9, length(p / size));
+    return loop.height_at(s) * outside * facing_out * facing_out / distance * p;
 }
 
 std::vector<dvec3> place_joints(const ClosedCurve& curve, const JointSpacing& spacing,
@@ -80,13 +99,15 @@ std::vector<dvec3> place_joints(const ClosedCurve& curve, const JointSpacing& sp
         return points;
     };
     // Sampling finds the turn to within some percent; what is missing is made good here.
-    for (int count = std::max(1, int(std::ceil(measure.back())));;) {
+    const int first = std::max(1, int(std::ceil(measure.back())));
+    for (int count = first; count <= kMostRefinement * first;) {
         std::vector<dvec3> points = joints(count);
         const double excess = largest_turn(points, curve.period) / spacing.max_turn;
         if (excess <= 1)
             return points;
         count = std::max(count + 1, int(count * std::min(excess, 1.5)));
     }
+    throw std::logic_error("a fibre's curve has a kink");
 }
 
 } // namespace rapport

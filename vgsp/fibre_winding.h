@@ -1,8 +1,8 @@
 #pragma once
 
 #include "renderer/kernel/fibres.h"
+#include "vgsp/fibre_scatter.h"
 #include "vgsp/yarn_axis.h"
-#include "vgsp/yarn_section.h"
 
 #include <functional>
 
@@ -12,16 +12,24 @@ namespace rapport {
 struct PlacedYarn {
     const YarnAxis* axis;
     const SectionLayout* section;
-    glm::dvec3 origin;    ///< of the axis' coordinate `along`, at half height
-    glm::dvec3 direction; ///< unit, in the plane of the cloth
-    double twist;         ///< [rad/µm of axis], Z positive
+    glm::dvec3 origin;       ///< of the axis' coordinate `along`, at half height
+    glm::dvec3 direction;    ///< unit, in the plane of the cloth
+    double crest;            ///< the axis' greatest height [µm]
+    double twist, ply_twist; ///< [rad/µm of axis], Z positive
+    MigrationField migration;
 
-    /// The axis of the fibre at `position` of the section, turned by `phase`, at arc length `s` of
-    /// the yarn's axis. The section stands across the axis; in a twisted yarn, across the mean
-    /// direction of the axis over one yarn radius: else every fibre would kink by several degrees
-    /// where an arc ends and the curvature jumps. This shifts fibres along the yarn; the outline
-    /// changes in second order only (≤ 0.2 % of the radius).
-    glm::dvec3 fibre_point(const glm::dvec2& position, double phase, double s) const;
+    /// The axis of the fibre at arc length `s` of the yarn's axis, in the turn of its first cell.
+    /// The section stands across the axis; for a fibre that does not keep its place in it, because
+    /// of twist or irregularity, across the mean direction of the axis over one yarn radius: else
+    /// the fibre would kink by several degrees where an arc ends and the curvature jumps. This
+    /// shifts fibres along the yarn; the outline changes in second order only (≤ 0.2 % of the
+    /// radius).
+    glm::dvec3 fibre_point(const FibreSite& fibre, double s) const;
+
+  private:
+    /// How far a stray fibre at `p` of the section loops outwards: in full at the outline where it
+    /// faces away from the crossed yarn, not at all where it faces it or lies inside the yarn, or in a yarn without crimp.
+    glm::dvec2 stray(const StrayLoop& loop, const glm::dvec2& p, double s, double height) const;
 };
 
 /// A smooth curve that closes: at(s + length) = at(s) + a period.
@@ -39,7 +47,8 @@ struct JointSpacing {
 
 /// Points of the curve in order, so that the closed chain through them keeps to `spacing`: at
 /// equal steps of turn ÷ max_turn + length ÷ max_length, dense in bends and sparse on floats.
-/// `dither` ∈ [0, 1) shifts them along by a share of a step.
+/// `dither` ∈ [0, 1) shifts them along by a share of a step. Throws std::logic_error for a curve
+/// with a kink, which no number of joints would bring within `spacing`.
 std::vector<glm::dvec3> place_joints(const ClosedCurve& curve, const JointSpacing& spacing,
                                      double dither);
 

@@ -9,6 +9,7 @@
 #include "vgsp/weave.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <numeric>
@@ -19,6 +20,19 @@ namespace {
 
 constexpr int kMaxRepeats = 64;      ///< of the draft that twist may ask for, along the yarns
 constexpr double kMaxSegments = 1e7; ///< about 2 GB once they are ready to trace
+
+/// Refuses a migration whose bends round fibres could not follow.
+void check_irregularity(const YarnSpec& yarn, const std::string& path, const std::string& place) {
+    const Irregularity& irregularity = yarn.irregularity;
+    const double smallest = 2 * yarn.fibre.diameter_um;
+    if (!(irregularity.correlation_length_um() >= smallest * (1 - 1e-9)))
+        throw FileError(path, place,
+                        fmt::format("a migration_um of at least {:.3g} for deviation_degrees {:g} "
+                                    "(a correlation length of two fibre diameters)",
+                                    smallest * std::tan(radians(irregularity.deviation_degrees)),
+                                    irregularity.deviation_degrees),
+                        fmt::format("{:g}", irregularity.migration_um));
+}
 
 /// The warp or the weft of the cloth.
 struct YarnSystem {
@@ -49,6 +63,7 @@ YarnSystem make_system(FibreKind kind, const Cloth& cloth) {
                         fmt::format("{:g}", sett));
     system.spacing = 1e4 / sett;
     system.section = lay_out_section(*system.yarn, cloth.path.string(), system.name);
+    check_irregularity(*system.yarn, cloth.path.string(), system.name);
     return system;
 }
 
@@ -94,10 +109,17 @@ void lay_axes(YarnSystem& system, const YarnSystem& crossed, const Cloth& cloth)
         system.axes.emplace_back(above, crossed.spacing, wrap, system.crimp, crossed.crimp);
 }
 
-/// Turns of the packing's symmetry per repeat of the draft, for each axis; 0 without twist.
-double symmetry_turns(const YarnSystem& system, const YarnAxis& axis) {
-    const bool winds = system.yarn->section == YarnSection::twisted && system.yarn->fibres > 1;
-    return winds ? system.yarn->twist_per_m * 1e-6 * axis.length() * system.section.symmetry : 0;
+/// Turns per repeat of the draft, along each axis, of the symmetry of a section's packing and, in a
+/// plied yarn, of its ring of singles. 0 for what does not turn.
+struct SymmetryTurns {
+    double packing = 0, plies = 0;
+};
+
+SymmetryTurns symmetry_turns(const YarnSystem& system, const YarnAxis& axis) {
+    const YarnSpec& yarn = *system.yarn;
+    const bool winds = yarn.section != YarnSection::parallel && yarn.fibres > 1;
+    return {winds ? yarn.twist_per_m * 1e-6 * axis.length() * system.section.symmetry : 0,
+            yarn.ply_twist_per_m * 1e-6 * axis.length() * yarn.plies};
 }
 
 /// Relative change of the twist that makes `repeats` repeats close.
@@ -106,15 +128,18 @@ double rounding_of(double turns_per_repeat, int repeats) {
     return turns == 0 ? 0 : std::round(turns) / turns - 1;
 }
 
-/// The fewest repeats of the draft after which every yarn's twist, changed by at most 2 %, has
+/// The fewest repeats of the draft after which every yarn's twists, changed by at most 2 %, have
 /// turned the packing onto itself.
 void close_twist(YarnSystem& system, const Cloth& cloth) {
     const auto rounding = [&] {
         double largest = 0;
         for (const YarnAxis& axis : system.axes) {
-            const double change = rounding_of(symmetry_turns(system, axis), system.repeats);
-            if (std::abs(change) > std::abs(largest))
-                largest = change;
+            const SymmetryTurns turns = symmetry_turns(system, axis);
+            for (const double per_repeat : {turns.packing, turns.plies}) {
+                const double change = rounding_of(per_repeat, system.repeats);
+                if (std::abs(change) > std::abs(largest))
+                    largest = change;
+            }
         }
         return largest;
     };
@@ -127,6 +152,53 @@ void close_twist(YarnSystem& system, const Cloth& cloth) {
                             fmt::format("twist_per_m = {:g}", system.yarn->twist_per_m));
 }
 
+/// The fibres of a yarn, one for each chain. After one cell a fibre goes on as the one
+/// `packing_steps` places further round its single and `ply_steps` singles further round the yarn;
+/// it closes when it comes back to its place, and is then all the fibres that it has met.
+std::vector<FibreSite> fibre_sites(const SectionLayout& section, int packing_steps, int ply_steps) {
+    const auto turns_on = [](int steps, int order) { return (steps % order + order) % order; };
+    std::vector<FibreSite> sites;
+    for (const glm::dvec2& position : section.fibres) {
+        const int order = section.copies(position), plies = section.plies;
+        std::vector<uint8_t> met(size_t(order) * plies, 0);
+        for (int start = 0; start < order * plies; ++start) {
+            if (met[start])
+                continue;
+            FibreSite site{position, section.fibre_radius, {}, {}};
+            int place = start % order, ply = start / order;
+            while (!met[size_t(ply) * order + place]) {
+                met[size_t(ply) * order + place] = 1;
+                site.turns.push_back({2 * kPi * place / order, 2 * kPi * ply / plies});
+                place = (place + turns_on(packing_steps, order)) % order;
+                ply = (ply + turns_on(ply_steps, plies)) % plies;
+            }
+            sites.push_back(std::move(site));
+        }
+    }
+    return sites;
+}
+
+/// The migration of one yarn's fibres.
+MigrationField migration_of(const YarnSystem& system, double cell_length, CounterRng random) {
+    const Irregularity& irregularity = system.yarn->irregularity;
+    if (irregularity.migration_um == 0)
+        return {};
+    return {irregularity.migration_um, irregularity.correlation_length_um(),
+            migration_width(system.section.outline), cell_length, random};
+}
+
+/// The smallest radius of curvature to reckon with in a yarn's fibres [µm].
+double smallest_bend(const PlacedYarn& yarn, const Irregularity& irregularity) {
+    const double twist = std::abs(yarn.twist) + std::abs(yarn.ply_twist);
+    double bend = yarn.axis->smallest_curvature_radius();
+    if (twist != 0)
+        bend = std::min(bend, 1 / twist);
+    if (irregularity.migration_um > 0) // three standard deviations, √3·σ/ℓ²
+        bend = std::min(bend, square(irregularity.correlation_length_um()) /
+                                  (3 * std::sqrt(3.0) * irregularity.migration_um));
+    return bend;
+}
+
 /// The fibres of yarn number `index` of the cell; `random_index` tells its random numbers from
 /// those of all other yarns.
 std::vector<kernel::FibreChain> wind_yarn(const YarnSystem& system, size_t index,
@@ -135,51 +207,68 @@ std::vector<kernel::FibreChain> wind_yarn(const YarnSystem& system, size_t index
     const SectionLayout& section = system.section;
     const bool warp = system.kind == kWarpFibre;
     const double cell_length = axis.length() * system.repeats;
-    const int order = section.symmetry;
-    const int steps = int(std::lround(symmetry_turns(system, axis) * system.repeats));
-    const double twist = 2 * kPi * steps / (order * cell_length);
+    const SymmetryTurns turns = symmetry_turns(system, axis);
+    const int packing_steps = int(std::lround(turns.packing * system.repeats));
+    const int ply_steps = int(std::lround(turns.plies * system.repeats));
     const double across = (index + 0.5) * system.spacing;
-    const PlacedYarn yarn{&axis, &section,
+    const auto random = [&](Purpose purpose, uint64_t sample) {
+        return CounterRng(options.seed, purpose, random_index, sample);
+    };
+    const PlacedYarn yarn{&axis,
+                          &section,
                           warp ? glm::dvec3(across, 0, 0) : glm::dvec3(0, across, 0),
-                          warp ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0), twist};
+                          warp ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0),
+                          system.crimp / 2,
+                          2 * kPi * packing_steps / (section.symmetry * cell_length),
+                          2 * kPi * ply_steps / (section.plies * cell_length),
+                          migration_of(system, cell_length, random(Purpose::fibre_jitter, 0))};
+    std::vector<FibreSite> sites = fibre_sites(section, packing_steps, ply_steps);
+    CounterRng scatter = random(Purpose::fibre_jitter, 1);
+    scatter_fibres(sites, section, *system.yarn, cell_length, scatter);
 
     const JointSpacing joints{radians(options.max_turn_degrees),
                               std::min(16 * section.fibre_radius, system.spacing / 2)};
-    const double bend = twist == 0
-                            ? axis.smallest_curvature_radius()
-                            : std::min(axis.smallest_curvature_radius(), 1 / std::abs(twist));
-    const double sampling_step = std::min(2 * joints.max_turn * bend, cell_length / 8);
-
-    // After one cell a fibre goes on as the one `steps` places further round the axis. It closes
-    // after order ÷ shared cells and is then all the fibres that it has met; `shared` such chains
-    // make up the whole set.
-    const int shared = std::gcd(std::abs(steps), order);
+    const double sampling_step = std::min(
+        2 * joints.max_turn * smallest_bend(yarn, system.yarn->irregularity), cell_length / 8);
     std::vector<kernel::FibreChain> chains;
-    for (const glm::dvec2& position : section.fibres) {
-        const bool centre = section.copies(position) == 1;
-        const int count = centre ? 1 : shared, cells = centre ? 1 : order / shared;
-        for (int k = 0; k < count; ++k) {
-            const double phase = 2 * kPi * k / order;
-            const ClosedCurve curve{[&](double s) { return yarn.fibre_point(position, phase, s); },
-                                    cell_length * cells, sampling_step,
-                                    axis.period() * system.repeats * cells * yarn.direction};
-            CounterRng random(options.seed, Purpose::fibre_dither, random_index, chains.size());
-            const double dither = options.dither ? random.uniform() : 0;
-            chains.push_back({place_joints(curve, joints, dither), curve.period,
-                              section.fibre_radius, system.kind});
-        }
+    for (const FibreSite& site : sites) {
+        const double cells = double(site.turns.size());
+        const ClosedCurve curve{[&](double s) { return yarn.fibre_point(site, s); },
+                                cell_length * cells, sampling_step,
+                                axis.period() * system.repeats * cells * yarn.direction};
+        CounterRng dithered = random(Purpose::fibre_dither, chains.size());
+        const double dither = options.dither ? dithered.uniform() : 0;
+        chains.push_back(
+            {place_joints(curve, joints, dither), curve.period, site.radius, system.kind});
     }
     return chains;
 }
 
-/// A lower bound of the system's segments in the cell: what the turns of its axes alone ask for.
+/// About the least that the system needs of segments in the cell: what the turns of its axes and
+/// the migration (its mean curvature is √(3π/2)·σ/ℓ²) ask for.
 double fewest_segments(const YarnSystem& system, const YarnSystem& crossed,
                        const MicroElementOptions& options) {
+    const Irregularity& irregularity = system.yarn->irregularity;
+    const double wandering = std::sqrt(1.5 * kPi) * irregularity.migration_um /
+                             square(irregularity.correlation_length_um());
     double turn = 0;
     for (const YarnAxis& axis : system.axes)
-        turn += axis.turn();
-    return turn * system.repeats * crossed.repeats * system.yarn->fibres /
+        turn += std::max(axis.turn(), wandering * axis.length());
+    return turn * system.repeats * crossed.repeats * system.yarn->fibres * system.yarn->plies /
            radians(options.max_turn_degrees);
+}
+
+std::optional<double> mass_of(const kernel::FibreAssembly& assembly,
+                              const std::vector<kernel::FibreSegment>& segments,
+                              const Cloth& cloth) {
+    const std::array densities{cloth.warp.fibre.density_g_cm3, cloth.weft.fibre.density_g_cm3};
+    double mass = 0; // µm³·g/cm³
+    for (const kernel::FibreSegment& s : segments) {
+        if (!densities[s.kind])
+            return std::nullopt;
+        mass += kPi * square(s.radius) * s.length * *densities[s.kind];
+    }
+    return mass / (assembly.cell.x * assembly.cell.y); // 1 µm·g/cm³ = 1 g/m²
 }
 
 double mean_crimp(const YarnSystem& system) {
@@ -241,6 +330,7 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
     const std::vector<kernel::FibreSegment> segments = kernel::fibre_segments(element.fibres);
     element.segments = segments.size();
     element.overlap_fraction = overlap_fraction(element.fibres, segments);
+    element.mass_g_per_m2 = mass_of(element.fibres, segments, cloth);
     element.thickness_um =
         2 * std::max(warp.crimp / 2 + warp.half_height(), weft.crimp / 2 + weft.half_height());
     element.warp_cover = 2 * warp.section.outline.half_width / warp.spacing;

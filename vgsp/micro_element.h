@@ -19,6 +19,8 @@ struct MicroElement {
     double cover_factor = 0;               ///< of both together
     double overlap_fraction = 0; ///< share of sampled fibre surface that lies inside another fibre
     double twist_rounding_warp = 0, twist_rounding_weft = 0; ///< relative; the largest of all yarns
+    /// Of the fibres, from their lengths and densities; nothing where a density is not known.
+    std::optional<double> mass_g_per_m2;
     double crimp_warp = 0, crimp_weft = 0; ///< axis length over straight length − 1
 };
 

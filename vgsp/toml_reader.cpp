@@ -75,7 +75,7 @@ toml::table parse_toml(std::string_view text, const std::string& path) {
 TomlReader::TomlReader(const toml::table& table, std::string path, std::string name)
     : table_(table), path_(std::move(path)), name_(std::move(name)) {}
 
-void TomlReader::allow_only(std::initializer_list<std::string_view> keys) const {
+void TomlReader::allow_only(const std::vector<std::string_view>& keys) const {
     for (const auto& [key, value] : table_)
         if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
             fail_at(key.source(),

@@ -30,8 +30,10 @@ class TomlReader {
     TomlReader(const toml::table& table, std::string path, std::string name = {});
 
     /// FileError for the first key that is not one of these; lists them.
-    void allow_only(std::initializer_list<std::string_view> keys) const;
+    void allow_only(const std::vector<std::string_view>& keys) const;
     bool has(std::string_view key) const { return table_.contains(key); }
+    /// What the file calls the key, its tables' names included.
+    std::string full_name(std::string_view key) const;
     /// The table of that key, which must be there.
     TomlReader table(std::string_view key) const;
 
@@ -54,7 +56,6 @@ class TomlReader {
 
   private:
     const toml::node& require(std::string_view key, const std::string& expected) const;
-    std::string full_name(std::string_view key) const;
     double number_of(const toml::node& node, const std::string& what, const Domain& domain) const;
     std::vector<double> numbers_of(std::string_view key, const Domain& domain, size_t least,
                                    size_t most, const std::string& expected) const;

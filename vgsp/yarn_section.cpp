@@ -193,7 +193,10 @@ SectionLayout parallel_section(const YarnSpec& yarn, SectionOutline outline,
         }
         does_not_fit(yarn, path, place, high);
     }
-    return {outline, radius, 1, lattice.sites, {1, 1}};
+    SectionLayout section{outline, radius, 1, lattice.sites, {1, 1}};
+    section.spacing = lattice.spacing;
+    section.inner = outline;
+    return section;
 }
 
 /// A centre of the lattice, the symmetry taken about it, and whether a site lies in the centre.
@@ -241,12 +244,15 @@ SectionLayout twisted_section(const YarnSpec& yarn, SectionOutline outline, cons
                           symmetry.order,
                           innermost_orbits(symmetry, yarn.fibres),
                           {1 / yarn.flatten, yarn.flatten}};
+    section.inner = {yarn.width_um / 2, yarn.width_um / 2};
+    section.spacing = HUGE_VAL;
     const double reach = length(section.fibres.back()); // of the outermost fibre, spacing 1
     const double twist = std::abs(yarn.twist_per_m) * 2e-6 * kPi / yarn.flatten; // tilt per radius
     const double wall = section.fibre_radius / yarn.flatten; // a fibre's radius before flattening
     if (reach == 0) {
         if (yarn.width_um / 2 < wall * (1 - kRounding))
             does_not_fit(yarn, path, place, 2 * wall / yarn.width_um);
+        section.clearance = 1 / yarn.flatten;
         return section;
     }
     // Outermost radius ρ = reach·spacing with spacing = 2·wall/cos(tilt), tan(tilt) = twist·ρ.
@@ -258,14 +264,79 @@ SectionLayout twisted_section(const YarnSpec& yarn, SectionOutline outline, cons
         does_not_fit(yarn, path, place, 2 * (needed + wall) / yarn.width_um);
     for (dvec2& fibre : section.fibres)
         fibre *= radius / reach;
+    section.spacing = radius / reach;
+    section.clearance = std::sqrt(1 + square(twist * radius)) / yarn.flatten;
+    return section;
+}
+
+/// The ring on which `plies` circles of radius 1 touch.
+double unit_ring(int plies) { return 1 / std::sin(kPi / plies); }
+
+SectionLayout plied_section(const YarnSpec& yarn, SectionOutline outline, const std::string& path,
+                            const std::string& place) {
+    const Symmetry symmetry = packing_symmetry(yarn.fibres);
+    SectionLayout section{outline,
+                          yarn.fibre.diameter_um / 2,
+                          symmetry.order,
+                          innermost_orbits(symmetry, yarn.fibres),
+                          {1 / yarn.flatten, yarn.flatten}};
+    section.plies = yarn.plies;
+    section.inner = {yarn.width_um / 2, yarn.width_um / 2};
+    const double reach = length(section.fibres.back()); // of the outermost fibre, spacing 1
+
+    // In the yarn's section the packing turns with both twists about the single's axis, and that
+    // with the plies' about the yarn's; nowhere does a fibre move faster than the two together.
+    const double per_turn = 2e-6 * kPi;
+    const double ply_twist = std::abs(yarn.ply_twist_per_m) * per_turn;
+    const double twist = std::abs(yarn.twist_per_m + yarn.ply_twist_per_m) * per_turn;
+    const auto clearance = [&](double ring, double radius) {
+        return std::sqrt(1 + square((ply_twist * ring + twist * radius) / yarn.flatten)) /
+               yarn.flatten;
+    };
+    struct Packing {
+        double ring, radius; ///< of the singles' axes; of the outermost fibres about them
+        double spacing, clearance;
+        bool fits;
+    };
+    const auto packing_at = [&](double scale) {
+        const double single = scale * yarn.width_um / 2, ring = single * unit_ring(yarn.plies);
+        double low = 0, high = single; // the widest packing that its walls leave in the single
+        for (int step = 0; step < 60; ++step) {
+            const double radius = 0.5 * (low + high);
+            (radius + section.fibre_radius * clearance(ring, radius) <= single ? low : high) =
+                radius;
+        }
+        Packing packing{ring, low, reach > 0 ? low / reach : HUGE_VAL, clearance(ring, low), true};
+        packing.fits =
+            section.fibre_radius * packing.clearance <= single * (1 + kRounding) &&
+            packing.spacing >= 2 * section.fibre_radius * packing.clearance * (1 - kRounding);
+        return packing;
+    };
+    const Packing packing = packing_at(1);
+    if (!packing.fits) {
+        double scale = 1;
+        while (scale < 1e6 && !packing_at(scale).fits)
+            scale *= 1.01;
+        does_not_fit(yarn, path, place, scale);
+    }
+    for (dvec2& fibre : section.fibres)
+        fibre *= reach > 0 ? packing.radius / reach : 0;
+    section.ply_ring = packing.ring;
+    section.spacing = packing.spacing;
+    section.clearance = packing.clearance;
     return section;
 }
 
 } // namespace
 
-dvec2 SectionLayout::place(const dvec2& fibre, double angle) const {
+dvec2 turned(const dvec2& v, double angle) {
     const double s = std::sin(angle), c = std::cos(angle);
-    return stretch * dvec2(fibre.x * c + fibre.y * s, fibre.y * c - fibre.x * s);
+    return {v.x * c + v.y * s, v.y * c - v.x * s};
+}
+
+dvec2 SectionLayout::place(const dvec2& fibre, double angle, double ply_angle) const {
+    const dvec2 in_single = turned(fibre, angle);
+    return stretch * (plies == 1 ? in_single : turned(dvec2(0, ply_ring) + in_single, ply_angle));
 }
 
 int SectionLayout::copies(const dvec2& fibre) const { return fibre == dvec2(0) ? 1 : symmetry; }
@@ -286,13 +357,20 @@ SectionLayout lay_out_section(const YarnSpec& yarn, const std::string& path,
     require(yarn.flatten > 0 && yarn.flatten <= 1, "flatten above 0 and up to 1", yarn.flatten);
     require(std::isfinite(yarn.twist_per_m), "a finite twist_per_m", yarn.twist_per_m);
 
-    const SectionOutline outline{yarn.width_um / 2 / yarn.flatten,
-                                 yarn.height_um / 2 * yarn.flatten};
+    require(std::isfinite(yarn.ply_twist_per_m), "a finite ply_twist_per_m", yarn.ply_twist_per_m);
+    const bool plied = yarn.section == YarnSection::plied;
+    require(plied ? yarn.plies >= 2 && yarn.plies <= 6 : yarn.plies == 1,
+            plied ? "2 … 6 plies" : "1 ply", yarn.plies);
+
+    const double singles = plied ? 1 + unit_ring(yarn.plies) : 1; // across the yarn
+    const SectionOutline outline{singles * yarn.width_um / 2 / yarn.flatten,
+                                 singles * yarn.height_um / 2 * yarn.flatten};
     if (yarn.section == YarnSection::parallel)
         return parallel_section(yarn, outline, path, place);
     require(yarn.height_um == yarn.width_um, "a height equal to the width of a twisted yarn",
             yarn.height_um);
-    return twisted_section(yarn, outline, path, place);
+    return plied ? plied_section(yarn, outline, path, place)
+                 : twisted_section(yarn, outline, path, place);
 }
 
 } // namespace rapport

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "materials/table/bsdf_table.h"
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +13,9 @@ struct Info {
     nlohmann::ordered_json json;
     std::string text; ///< lines, each ended by '\n'
 };
+
+/// The four errors of a measurement in words, without a line's end.
+std::string error_text(const MeasurementError& error);
 
 Info draft_info(const std::filesystem::path& path);
 Info cloth_info(const std::filesystem::path& path);

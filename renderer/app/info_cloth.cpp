@@ -35,16 +35,43 @@ std::string draft_text(const Draft& draft) {
     return text;
 }
 
+std::string twist_text(double per_m) {
+    return per_m == 0
+               ? std::string()
+               : fmt::format(", {:.4g} turns per m {}", std::abs(per_m), per_m > 0 ? 'Z' : 'S');
+}
+
+std::string irregularity_text(const YarnSpec& yarn) {
+    const Irregularity& irregularity = yarn.irregularity;
+    std::string text;
+    if (irregularity.migration_um > 0)
+        text += fmt::format(", fibres wander {:g} µm and {:g}° (correlated over {:.3g} µm)",
+                            irregularity.migration_um, irregularity.deviation_degrees,
+                            irregularity.correlation_length_um());
+    if (irregularity.spacing_jitter_um > 0)
+        text += fmt::format(", places vary by {:g} µm", irregularity.spacing_jitter_um);
+    if (yarn.fibre.diameter_variation > 0)
+        text += fmt::format(", diameters by {:g} %", 100 * yarn.fibre.diameter_variation);
+    if (irregularity.stray_fibres > 0)
+        text += fmt::format(", {:g} % of the outer fibres stray", 100 * irregularity.stray_fibres);
+    return text;
+}
+
 std::string yarn_text(const char* name, const YarnSpec& yarn, double per_cm, double cover,
                       double crimp) {
+    const bool plied = yarn.section == YarnSection::plied;
     std::string text =
-        fmt::format("{}: {} per cm, {} {} fibres of {:.4g} µm in {:.4g} × {:.4g} µm", name, per_cm,
-                    yarn.fibres, yarn.section == YarnSection::twisted ? "twisted" : "parallel",
+        fmt::format("{}: {} per cm, {}{} {} fibres of {:.4g} µm in {:.4g} × {:.4g} µm", name,
+                    per_cm, plied ? fmt::format("{} plies of ", yarn.plies) : "", yarn.fibres,
+                    yarn.section == YarnSection::parallel ? "parallel" : "twisted",
                     yarn.fibre.diameter_um, yarn.width_um, yarn.height_um);
-    if (yarn.twist_per_m != 0)
-        text += fmt::format(", {:.4g} turns per m {}", std::abs(yarn.twist_per_m),
-                            yarn.twist_per_m > 0 ? "Z" : "S");
-    return text + fmt::format(", cover {:.3f}, crimp {:.1f} %\n", cover, 100 * crimp);
+    text += twist_text(yarn.twist_per_m);
+    if (plied)
+        text +=
+            ", plied" + (yarn.ply_twist_per_m == 0 ? std::string(" without twist")
+                                                   : twist_text(yarn.ply_twist_per_m).substr(1));
+    return text + irregularity_text(yarn) +
+           fmt::format(", cover {:.3f}, crimp {:.1f} %\n", cover, 100 * crimp);
 }
 
 } // namespace
@@ -75,6 +102,8 @@ Info cloth_info(const std::filesystem::path& path) {
                                   {"twist_rounding_warp", element.twist_rounding_warp},
                                   {"twist_rounding_weft", element.twist_rounding_weft},
                                   {"overlap_fraction", element.overlap_fraction}};
+    if (element.mass_g_per_m2)
+        info.json["micro_element"]["mass_g_per_m2"] = *element.mass_g_per_m2;
 
     info.text =
         fmt::format("Cloth \"{}\", bands {}\n", cloth.name, fmt::join(cloth.bands.names, ", ")) +
@@ -87,6 +116,9 @@ Info cloth_info(const std::filesystem::path& path) {
                    element.fibres.cell.x, element.fibres.cell.y, element.thickness_um,
                    element.fibres.chains.size(), element.segments, element.cover_factor,
                    100 * element.overlap_fraction);
+    if (element.mass_g_per_m2)
+        fmt::format_to(std::back_inserter(info.text), "mass: {:.0f} g/m²\n",
+                       *element.mass_g_per_m2);
     if (element.twist_rounding_warp != 0 || element.twist_rounding_weft != 0)
         fmt::format_to(std::back_inserter(info.text),
                        "twist rounded by {:+.2f} % (warp), {:+.2f} % (weft) to close over {} × {} "

@@ -1,6 +1,7 @@
 #include "vgsp/cloth.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/math.h"
 #include "renderer/core/rng.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
@@ -125,6 +126,43 @@ TEST(Cloth, DefaultsAreThoseOfTheTable) {
     EXPECT_FALSE(clear.warp.fibre.color);
 }
 
+// Morton & Hearle: cotton of 1.7 dtex and 1.52 g/cm³ is 11.9 µm thick as a round fibre.
+TEST(Fineness, FollowsFromDiameterAndDensity) {
+    EXPECT_NEAR(fibre_diameter_um(1.7, 1.52), 11.93, 0.01);
+    EXPECT_NEAR(fibre_dtex(fibre_diameter_um(2.3, 1.31), 1.31), 2.3, 1e-12);
+    // A 10 µm fibre of water weighs π·25 µm² · 10 km · 1 g/cm³ = 0.785 g.
+    EXPECT_NEAR(fibre_dtex(10, 1), 0.7854, 1e-4);
+}
+
+TEST(Cloth, FinenessGivesDiameterAndNumber) {
+    std::string text = with("diameter_um = 11.9\n", "dtex = 1.7\ndensity_g_cm3 = 1.52\n");
+    text.replace(text.find("fibres = 37"), 11, "tex = 6.3");
+    const Cloth cloth = read_text(text);
+    EXPECT_EQ(cloth.warp.fibres, 37); // 63 dtex of 1.7 each
+    EXPECT_NEAR(cloth.warp.fibre.diameter_um, 11.93, 0.01);
+    EXPECT_EQ(cloth.warp.fibre.density_g_cm3, 1.52);
+    EXPECT_FALSE(cloth.weft.fibre.density_g_cm3);
+    EXPECT_EQ(read_text(cloth.source).warp, cloth.warp);
+}
+
+TEST(Cloth, PliesAndIrregularityAreReadAndWritten) {
+    std::string text = with("section = \"twisted\"", "section = \"plied\"\nplies = 3\n"
+                                                     "ply_twist_per_m = 500\nmigration_um = 2\n"
+                                                     "deviation_degrees = 3\nstray_fibres = 0.1\n"
+                                                     "spacing_jitter_um = 0.5");
+    text.replace(text.find("surface_absorption"), 0, "diameter_variation = 0.12\n");
+    const Cloth cloth = read_text(text);
+    EXPECT_EQ(cloth.weft.section, YarnSection::plied);
+    EXPECT_EQ(cloth.weft.plies, 3);
+    EXPECT_EQ(cloth.weft.ply_twist_per_m, 500);
+    EXPECT_EQ(cloth.weft.irregularity, (Irregularity{2, 3, 0.5, 0.1}));
+    EXPECT_NEAR(cloth.weft.irregularity.correlation_length_um(), 2 / std::tan(radians(3.0)), 1e-9);
+    EXPECT_EQ(cloth.weft.fibre.diameter_variation, 0.12);
+    EXPECT_EQ(cloth.warp.irregularity, Irregularity{});
+    EXPECT_EQ(read_text(cloth.source).weft, cloth.weft);
+    EXPECT_EQ(read_text(cloth.source).source, cloth.source);
+}
+
 TEST(Cloth, BandsSetTheLengthOfSpectra) {
     const std::string four = with("crimp_balance = 0.25\n", "bands.edges_nm = [400, 500.5, 700]\n");
     EXPECT_NE(refusal(four).expected.find("2 numbers"), std::string::npos);
@@ -233,7 +271,16 @@ TEST(Cloth, BadValuesAreRefusedAtTheirPlace) {
              {"0.002, 0.003]", "0.003]", "[0.001, 0.003]", "3 numbers"},
              {"twist_per_m = -700", "twist_per_m = true", "true", "a number"},
              {"section = \"twisted\"", "section = \"twist\"", "\"twist\"",
-              "\"parallel\" or \"twisted\""},
+              "\"parallel\" or \"twisted\" or \"plied\""},
+             {"fibres = 37", "fibres = 37\ntex = 6", "6\nwidth", "one of 'warp.fibres' and"},
+             {"fibres = 37", "tex = 6", "6\nwidth", "'density_g_cm3'"},
+             {"diameter_um = 11.9", "diameter_um = 11.9\ndtex = 2", "2\nrefr",
+              "one of 'warp.fibre.diameter_um' and"},
+             {"diameter_um = 11.9", "dtex = 2", "[warp.fibre]", "density_g_cm3"},
+             {"flatten = 0.8", "migration_um = 2", "2\n[warp.fibre]", "together"},
+             {"flatten = 0.8", "deviation_degrees = 2", "2\n[warp.fibre]", "together"},
+             {"flatten = 0.8", "stray_fibres = 1.2", "1.2", "[0, 1]"},
+             {"twist_per_m = -700", "twist_per_m = -700\nplies = 2", "plies", "twist_per_m"},
              {"weave = \"twill 2/1 Z\"", "weave = \"twill 2/1\"", "\"twill 2/1\"", "twill a/b Z"},
              {"weave = \"twill 2/1 Z\"", "weave = 5", "5\n", "a text"},
              {"weave = \"twill 2/1 Z\"", "rows = ['01', '1']", "['01', '1']", "2 crossings"},

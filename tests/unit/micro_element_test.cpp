@@ -228,6 +228,40 @@ TEST(MicroElement, TwistTurnsTheFibresAsOftenAsAskedAndTheRightWay) {
     }
 }
 
+TEST(MicroElement, PliedYarnsCloseWithAllTheirFibres) {
+    for (int plies : {2, 3}) {
+        Cloth cloth = filament_cloth();
+        cloth.warp = parallel_yarn(7, 62, 62, 16);
+        cloth.warp.section = YarnSection::plied;
+        cloth.warp.plies = plies;
+        cloth.warp.twist_per_m = 700;
+        cloth.warp.ply_twist_per_m = -600;
+        const MicroElement element = build_micro_element(cloth);
+        EXPECT_LE(std::abs(element.twist_rounding_warp), 0.02);
+        double fibres = 0;
+        for (const FibreChain& chain : element.fibres.chains)
+            if (chain.kind == kWarpFibre)
+                fibres += chain.period.y / element.fibres.cell.y;
+        EXPECT_NEAR(fibres, 2 * 7 * plies * element.repeats_x, 1e-9);
+        EXPECT_EQ(kernel::fibre_segments(element.fibres).size(), element.segments);
+        EXPECT_LT(element.overlap_fraction, 0.01);
+        EXPECT_LE(largest_turn_degrees(element), 1 + 1e-6);
+    }
+}
+
+TEST(MicroElement, WeighsItsFibres) {
+    Cloth cloth = filament_cloth();
+    EXPECT_FALSE(build_micro_element(cloth).mass_g_per_m2);
+    cloth.warp.fibre.density_g_cm3 = 1.5;
+    EXPECT_FALSE(build_micro_element(cloth).mass_g_per_m2);
+    cloth.weft.fibre.density_g_cm3 = 1.2;
+    const MicroElement element = build_micro_element(cloth);
+    // tex · threads per metre · (1 + crimp): 1 tex on 1000 threads per metre weighs 1 g/m².
+    const double warp = 19 * fibre_dtex(20, 1.5) / 10 * 3.6 * (1 + element.crimp_warp);
+    const double weft = 12 * fibre_dtex(18, 1.2) / 10 * 3.0 * (1 + element.crimp_weft);
+    EXPECT_NEAR(*element.mass_g_per_m2, warp + weft, 0.01 * (warp + weft));
+}
+
 TEST(MicroElement, TakesTheFewestRepeatsThatTwistAllows) {
     EXPECT_EQ(build_micro_element(filament_cloth()).repeats_x, 1);
     const MicroElement element = build_micro_element(twisted_cloth(450));

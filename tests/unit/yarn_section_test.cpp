@@ -160,5 +160,66 @@ TEST(YarnSection, RefusesWhatIsNoYarn) {
     EXPECT_NE(refusal(yarn), "");
 }
 
+YarnSpec plied_yarn(int plies, int fibres, double twist, double ply_twist) {
+    YarnSpec yarn = twisted_yarn(fibres, 120, 12, twist);
+    yarn.section = YarnSection::plied;
+    yarn.plies = plies;
+    yarn.ply_twist_per_m = ply_twist;
+    return yarn;
+}
+
+/// All fibres of a plied yarn's section after `s` µm.
+std::vector<dvec2> plied_fibres(const SectionLayout& section, const YarnSpec& yarn, double s) {
+    std::vector<dvec2> found;
+    const double turn = 2 * kPi * s * 1e-6;
+    for (int ply = 0; ply < section.plies; ++ply)
+        for (const dvec2& fibre : section.fibres)
+            for (int k = 0; k < section.copies(fibre); ++k)
+                found.push_back(
+                    section.place(fibre, turn * yarn.twist_per_m + 2 * kPi * k / section.symmetry,
+                                  turn * yarn.ply_twist_per_m + 2 * kPi * ply / section.plies));
+    return found;
+}
+
+TEST(PliedSection, HoldsItsFibresApartAllAlong) {
+    for (const auto& [plies, twist, ply_twist] :
+         {std::tuple(2, 800.0, -500.0), {2, 600.0, 600.0}, {3, -700.0, 450.0}, {5, 0.0, 300.0}})
+        for (double flatten : {1.0, 0.85}) {
+            YarnSpec yarn = plied_yarn(plies, 19, twist, ply_twist);
+            yarn.flatten = flatten;
+            const SectionLayout section = lay_out_section(yarn, "y.toml", "warp");
+            for (double s : {0.0, 130.0, 777.0}) {
+                const std::vector<dvec2> fibres = plied_fibres(section, yarn, s);
+                ASSERT_EQ(fibres.size(), size_t(19 * plies));
+                EXPECT_GE(least_distance(fibres), 12 - 1e-6) << plies << ' ' << flatten;
+                EXPECT_LE(protrusion(fibres, section), 1e-6) << plies << ' ' << flatten;
+                // Fibres move past each other: no nearer than a diameter at any offset along.
+                const double step = 2;
+                const std::vector<dvec2> later = plied_fibres(section, yarn, s + step);
+                for (size_t i = 0; i < fibres.size(); ++i)
+                    for (size_t j = 0; j < i; ++j) {
+                        EXPECT_GE(std::hypot(length(fibres[i] - later[j]), step), 12 - 1e-2);
+                    }
+            }
+        }
+    const SectionLayout two = lay_out_section(plied_yarn(2, 19, 800, -500), "y.toml", "warp");
+    EXPECT_DOUBLE_EQ(two.outline.half_width, 120); // two singles side by side
+}
+
+TEST(PliedSection, SaysWhatSizeIsNeeded) {
+    YarnSpec yarn = plied_yarn(2, 37, 900, 500);
+    yarn.width_um = yarn.height_um = 70;
+    try {
+        lay_out_section(yarn, "y.toml", "weft");
+        ADD_FAILURE() << "accepted";
+    } catch (const FileError& error) {
+        double size = 0;
+        ASSERT_EQ(std::sscanf(error.expected.c_str(), "a section of at least %lf", &size), 1)
+            << error.what();
+        yarn.width_um = yarn.height_um = size;
+        EXPECT_NO_THROW(lay_out_section(yarn, "y.toml", "weft"));
+    }
+}
+
 } // namespace
 } // namespace rapport
