@@ -19,6 +19,11 @@ class TableBsdf;
 // from and where the light is. A camera path needs f(light → eye)·|cosθ_light|; that is what
 // `eval` returns. All quantities are linear RGB.
 
+struct BsdfValue {
+    Rgb value; ///< f·|cosθ_light|
+    float pdf; ///< as of `Bsdf::pdf`
+};
+
 struct BsdfSample {
     glm::vec3 light; ///< sampled direction
     Rgb weight;      ///< f·|cosθ_light| / pdf
@@ -35,6 +40,10 @@ class Bsdf {
     /// Density of `sample` over solid angle [1/sr]; integrates to 1 over the sphere (or to 0, if
     /// nothing scatters from `eye`).
     virtual float pdf(const glm::vec3& eye, const glm::vec3& light) const = 0;
+    /// `eval` and `pdf` of one pair of directions, where a material can share the work.
+    virtual BsdfValue eval_and_pdf(const glm::vec3& eye, const glm::vec3& light) const {
+        return {eval(eye, light), pdf(eye, light)};
+    }
     /// A direction of density `pdf`; nothing if no light scatters. `choice` and `u` are uniform in
     /// [0, 1).
     virtual std::optional<BsdfSample> sample(const glm::vec3& eye, float choice,

@@ -23,6 +23,11 @@ class Cloth final : public Bsdf {
         return table_->pdf(to_weave(eye), to_weave(light));
     }
 
+    BsdfValue eval_and_pdf(const glm::vec3& eye, const glm::vec3& light) const override {
+        const TableBsdf::Value both = table_->eval_and_pdf(to_weave(eye), to_weave(light));
+        return {both.intensity, both.pdf};
+    }
+
     std::optional<BsdfSample> sample(const glm::vec3& eye, float choice,
                                      const glm::vec2& u) const override {
         const auto sample = table_->sample(to_weave(eye), choice, u);

@@ -43,12 +43,14 @@ Neighbour outer_neighbour(const DirectionMesh& mesh, std::span<const Rgb> means,
 }
 
 void keep_positive(BinPlane& plane) {
+    constexpr float kSteepest = 0.999f; // at 1 rounding would decide whether a corner scatters
     for (int channel = 0; channel < 3; ++channel) {
         const float steepest =
             std::abs(plane.slope_xi[channel]) + std::abs(plane.slope_eta[channel]);
-        if (steepest > plane.mean[channel]) {
-            plane.slope_xi[channel] *= plane.mean[channel] / steepest;
-            plane.slope_eta[channel] *= plane.mean[channel] / steepest;
+        const float allowed = kSteepest * plane.mean[channel];
+        if (steepest > allowed) {
+            plane.slope_xi[channel] *= allowed / steepest;
+            plane.slope_eta[channel] *= allowed / steepest;
         }
     }
 }
@@ -91,20 +93,7 @@ BinLookup::BinLookup(const DirectionMesh& mesh)
     }
 }
 
-BinPosition BinLookup::locate(const glm::vec3& w) const {
-    const float cosine = std::min(std::abs(w.z), 1.0f);
-    const int ring = std::min(static_cast<int>(std::acos(cosine) * rings_per_radian_),
-                              static_cast<int>(rings_.size()) - 1);
-    const Ring& r = rings_[ring];
-    const float xi = (r.cos_low - cosine) * r.xi_per_cosine - 1;
-    const float x = azimuth(w) * r.bins_per_radian;
-    const uint32_t step = std::min(static_cast<uint32_t>(x), r.bins - 1);
-    const float eta = 2 * (x - static_cast<float>(step)) - 1;
-    return {r.first + step, std::clamp(xi, -1.0f, 1.0f), std::clamp(eta, -1.0f, 1.0f)};
-}
-
 glm::vec3 BinLookup::direction(const BinPosition& position) const {
-    constexpr float kSmallestCosine = 1e-7f; // on the horizon a direction would lose its side
     const Ring& r = rings_[ring_of_[position.bin]];
     const float cosine = std::clamp(glm::mix(r.cos_low, r.cos_high, 0.5f * (position.xi + 1)),
                                     kSmallestCosine, 1.0f);

@@ -1,6 +1,7 @@
 #include "materials/table/table_bsdf.h"
 
 #include "materials/table/bin_reconstruction.h"
+#include "materials/table/fast_angles.h"
 #include "renderer/core/error.h"
 
 #include <algorithm>
@@ -31,11 +32,29 @@ Rgb to_rgb(const float* values, const std::vector<Rgb>& band_rgb) {
     return into_gamut(sum);
 }
 
+/// A BinPlane laid out for one look-up; the fourth lane is not used.
+struct PackedPlane {
+    Float4 mean, slope_xi, slope_eta;
+
+    explicit PackedPlane(const BinPlane& plane)
+        : mean(lanes(plane.mean)), slope_xi(lanes(plane.slope_xi)),
+          slope_eta(lanes(plane.slope_eta)) {}
+    Float4 at(const BinPosition& p) const { return mean + slope_xi * p.xi + slope_eta * p.eta; }
+
+    static Float4 lanes(const Rgb& c) {
+        return Float4([&](int lane) { return lane < 3 ? c[lane] : 0.0f; });
+    }
+    static Rgb rgb(const Float4& lanes) { return {lanes[0], lanes[1], lanes[2]}; }
+};
+
 /// The nodes about a direction of incidence and their bilinear weights, which sum to 1.
 struct Blend {
     std::array<uint32_t, 4> node;
     std::array<float, 4> weight;
 };
+
+template <class T> Direction<T> spread(const glm::vec3& w) { return {T(w.x), T(w.y), T(w.z)}; }
+glm::vec3 to_vector(const Direction<float>& w) { return {w.x, w.y, w.z}; }
 
 } // namespace
 
@@ -43,10 +62,12 @@ struct TableBsdf::Implementation {
     BsdfTable table;
     BinLookup lookup;
     size_t bins;
-    std::vector<BinPlane> planes;  ///< [D, 2, B]
+    std::vector<PackedPlane> planes; ///< [D, 2, B]
     std::vector<float> cumulative; ///< [D, 2·B], to 1 (or 0 throughout) over both blocks of a node
     std::vector<Rgb> albedo, unscattered; ///< [D]
+    std::vector<glm::vec3> incident;      ///< [D], unit vectors
     std::vector<float> theta, phi;        ///< axes of the grid; φ closed by 2π
+    YarnSystem yarns[2][2];               ///< [side][block], whose highlights are followed
 
     explicit Implementation(BsdfTable source)
         : table(std::move(source)), lookup(table.exits), bins(table.exits.bins()),
@@ -56,6 +77,12 @@ struct TableBsdf::Implementation {
         const std::vector<Rgb> band_rgb = table.bands.to_rgb();
         for (size_t node = 0; node < table.directions(); ++node)
             add_node(node, band_rgb);
+        for (const size_t side : {0, 1})
+            for (const size_t block : {0, 1})
+                yarns[side][block] = error_of_neighbours(YarnSystem::weft, side, block) <
+                                             error_of_neighbours(YarnSystem::warp, side, block)
+                                         ? YarnSystem::weft
+                                         : YarnSystem::warp;
     }
 
     void add_node(size_t node, const std::vector<Rgb>& band_rgb) {
@@ -64,9 +91,9 @@ struct TableBsdf::Implementation {
         for (size_t i = 0; i < means.size(); ++i)
             means[i] = to_rgb(&table.intensity[(node * means.size() + i) * bands], band_rgb);
         for (size_t block = 0; block < 2; ++block) {
-            const auto half =
-                reconstruct(table.exits, std::span(means).subspan(block * bins, bins));
-            planes.insert(planes.end(), half.begin(), half.end());
+            for (const BinPlane& plane :
+                 reconstruct(table.exits, std::span(means).subspan(block * bins, bins)))
+                planes.emplace_back(plane);
         }
 
         glm::dvec3 flux(0);
@@ -80,18 +107,54 @@ struct TableBsdf::Implementation {
         for (const double partial : sums)
             cumulative.push_back(sum > 0 ? static_cast<float>(partial / sum) : 0);
         albedo.emplace_back(flux);
+        const IncidentDirection& from = table.incident[node];
+        const glm::dvec3 w = spherical_direction(from.theta, from.phi);
+        incident.emplace_back(w.x, w.y, from.side == Side::front ? w.z : -w.z);
         unscattered.push_back(to_rgb(&table.unscattered[node * bands], band_rgb));
+    }
+
+    /// Squared error of every other node of the grid as foretold by its neighbours in φ.
+    double error_of_neighbours(YarnSystem followed, size_t side, size_t block) const {
+        const size_t thetas = theta.size(), phis = phi.size() - 1;
+        const uint32_t* grid = &table.grid_index[side * thetas * phis];
+        double error = 0;
+        for (size_t row = 0; row < thetas; ++row)
+            for (size_t column = 0; column < phis; column += 2) {
+                const uint32_t* ring = grid + row * phis;
+                const uint32_t node = ring[column];
+                for (uint32_t bin = 0; bin < bins; ++bin) {
+                    const glm::vec3 out = lookup.direction({bin, 0, 0});
+                    float foretold = 0;
+                    for (const size_t step : {size_t{1}, phis - 1}) {
+                        const uint32_t from = ring[(column + step) % phis];
+                        const auto [source, stretch] =
+                            along(followed, spread<float>(out), spread<float>(incident[node]),
+                                  spread<float>(incident[from]));
+                        const BinPosition place = lookup.locate(to_vector(source));
+                        foretold += 0.5f * stretch *
+                                    mean(PackedPlane::rgb(plane(from, block, place.bin).at(place)));
+                    }
+                    error +=
+                        table.exits.solid_angle(bin) *
+                        square(foretold - mean(PackedPlane::rgb(plane(node, block, bin).mean)));
+                }
+            }
+        return error;
+    }
+
+    const PackedPlane& plane(size_t node, size_t block, size_t bin) const {
+        return planes[(node * 2 + block) * bins + bin];
     }
 
     /// Bilinear in (θ, φ), φ round the circle; constant beyond the first and last θ.
     Blend blend(const glm::vec3& eye) const {
-        const float eye_theta = std::acos(std::min(std::abs(eye.z), 1.0f));
+        const float eye_theta = fast_acos(std::min(std::abs(eye.z), 1.0f));
         const auto above = std::upper_bound(theta.begin(), theta.end(), eye_theta);
         const size_t t1 = std::min<size_t>(above - theta.begin(), theta.size() - 1);
         const size_t t0 = above == theta.begin() ? 0 : above - theta.begin() - 1;
         const float s = t0 == t1 ? 0 : (eye_theta - theta[t0]) / (theta[t1] - theta[t0]);
 
-        const float eye_phi = azimuth(eye);
+        const float eye_phi = fast_azimuth(eye.x, eye.y);
         const size_t phis = phi.size() - 1;
         const size_t p0 =
             std::upper_bound(phi.begin() + 1, phi.end() - 1, eye_phi) - (phi.begin() + 1);
@@ -107,13 +170,20 @@ struct TableBsdf::Implementation {
     /// The interpolant; everything else follows from it.
     Rgb intensity(const Blend& blend, const glm::vec3& eye, const glm::vec3& light) const {
         const size_t block = (eye.z > 0) == (light.z > 0) ? 0 : 1;
-        const BinPosition position = lookup.locate(light);
-        Rgb sum(0);
+        Direction<Float4> node{};
+        for (int k = 0; k < 4; ++k) {
+            node.x[k] = incident[blend.node[k]].x;
+            node.y[k] = incident[blend.node[k]].y;
+        }
+        const auto [source, stretch] = along(yarns[eye.z > 0 ? 0 : 1][block], spread<Float4>(light),
+                                             spread<Float4>(eye), node);
+        const std::array<BinPosition, 4> places = lookup.locate(source);
+        Float4 sum = 0.0f;
         for (int k = 0; k < 4; ++k)
-            if (blend.weight[k] > 0)
-                sum += blend.weight[k] *
-                       planes[(blend.node[k] * 2 + block) * bins + position.bin].at(position);
-        return glm::max(sum, Rgb(0)); // a plane that touches 0 may round below it
+            sum += (blend.weight[k] * stretch[k]) *
+                   plane(blend.node[k], block, places[k].bin).at(places[k]);
+        return PackedPlane::rgb(
+            max(sum, Float4(0.0f))); // a plane that touches 0 may round below it
     }
 
     Rgb blended(const Blend& blend, const std::vector<Rgb>& values) const {
@@ -144,18 +214,21 @@ const BsdfTable& TableBsdf::table() const { return implementation_->table; }
 // On the horizon a direction has no side, and nothing scatters.
 
 Rgb TableBsdf::eval(const glm::vec3& eye, const glm::vec3& light) const {
-    if (eye.z == 0 || light.z == 0)
-        return Rgb(0);
-    return implementation_->intensity(implementation_->blend(eye), eye, light);
+    return eval_and_pdf(eye, light).intensity;
 }
 
 float TableBsdf::pdf(const glm::vec3& eye, const glm::vec3& light) const {
+    return eval_and_pdf(eye, light).pdf;
+}
+
+TableBsdf::Value TableBsdf::eval_and_pdf(const glm::vec3& eye, const glm::vec3& light) const {
     if (eye.z == 0 || light.z == 0)
-        return 0;
+        return {Rgb(0), 0};
     const Implementation& my = *implementation_;
     const Blend blend = my.blend(eye);
+    const Rgb intensity = my.intensity(blend, eye, light);
     const float albedo = mean(my.blended(blend, my.albedo));
-    return albedo > 0 ? mean(my.intensity(blend, eye, light)) / albedo : 0;
+    return {intensity, albedo > 0 ? mean(intensity) / albedo : 0};
 }
 
 std::optional<TableBsdf::Sample> TableBsdf::sample(const glm::vec3& eye, float choice,
@@ -187,16 +260,22 @@ std::optional<TableBsdf::Sample> TableBsdf::sample(const glm::vec3& eye, float c
 
     const float* cumulative = &my.cumulative[node * 2 * my.bins];
     const size_t i = std::upper_bound(cumulative, cumulative + 2 * my.bins, again) - cumulative;
-    const BinPlane& plane = my.planes[node * 2 * my.bins + i];
-    const float height = mean(plane.mean);
-    const glm::vec2 place =
-        sample_plane(mean(plane.slope_xi) / height, mean(plane.slope_eta) / height, u);
+    const PackedPlane& plane = my.planes[node * 2 * my.bins + i];
+    const float height = mean(PackedPlane::rgb(plane.mean));
+    const glm::vec2 place = sample_plane(mean(PackedPlane::rgb(plane.slope_xi)) / height,
+                                         mean(PackedPlane::rgb(plane.slope_eta)) / height, u);
 
     const bool reflected = i < my.bins;
     glm::vec3 light =
         my.lookup.direction({static_cast<uint32_t>(reflected ? i : i - my.bins), place.x, place.y});
     if ((eye.z > 0) != reflected)
         light.z = -light.z;
+
+    const auto moved = along(my.yarns[eye.z > 0 ? 0 : 1][reflected ? 0 : 1], spread<float>(light),
+                             spread<float>(my.incident[node]), spread<float>(eye));
+    light = to_vector(moved.direction);
+    if (std::abs(light.z) < kSmallestCosine)
+        light.z = (eye.z > 0) == reflected ? kSmallestCosine : -kSmallestCosine;
     // From the direction, not from the place: what rounding moved over an edge keeps its value.
     const Rgb intensity = my.intensity(blend, eye, light);
     const float pdf = mean(intensity) / albedo;

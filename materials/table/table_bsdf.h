@@ -9,7 +9,9 @@
 namespace rapport {
 
 /// Evaluates and samples a full table by one interpolant: `eval`, `pdf` and `sample` agree with
-/// each other by construction. All of it belongs to the *eye* direction, which takes the table's
+/// each other by construction. Between directions of incidence, the exits of the nodes around are
+/// moved until their highlights lie where those of the incidence asked for do, and then blended
+/// (see highlight_shift.h). All of it belongs to the *eye* direction, which takes the table's
 /// incidence slot (reciprocity): eval(eye, light) = I(eye → light), so albedo and pdf are those of
 /// the direction the table was measured for. Directions are in the local frame of the cloth.
 class TableBsdf {
@@ -20,6 +22,12 @@ class TableBsdf {
 
     Rgb eval(const glm::vec3& eye, const glm::vec3& light) const;
     float pdf(const glm::vec3& eye, const glm::vec3& light) const;
+    struct Value {
+        Rgb intensity;
+        float pdf;
+    };
+    /// Both at the price of one.
+    Value eval_and_pdf(const glm::vec3& eye, const glm::vec3& light) const;
     struct Sample {
         glm::vec3 light;
         Rgb weight; ///< intensity / pdf

@@ -59,7 +59,7 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
     if (!sides_agree(point, light->direction, local))
         return Rgb(0);
     const Bsdf& material = *point.surface->material;
-    const Rgb scattered = material.eval(eye, local);
+    const auto [scattered, pdf] = material.eval_and_pdf(eye, local);
     if (scattered == Rgb(0))
         return Rgb(0);
     const glm::vec3 origin = offset_origin(point, light->direction);
@@ -71,7 +71,7 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
     if (light->delta)
         return arriving / choice->probability;
     const float density = choice->probability * light->pdf;
-    return arriving * (balance(density, material.pdf(eye, local)) / density);
+    return arriving * (balance(density, pdf) / density);
 }
 
 Rgb escaped_radiance(const Scene& scene, const glm::vec3& direction,

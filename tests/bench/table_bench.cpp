@@ -53,8 +53,7 @@ template <class F> void run(benchmark::State& state, const F& call) {
 
 void eval_and_pdf(benchmark::State& state) {
     run(state, [](const TableBsdf& bsdf, const Query& q) {
-        benchmark::DoNotOptimize(bsdf.eval(q.eye, q.light));
-        benchmark::DoNotOptimize(bsdf.pdf(q.eye, q.light));
+        benchmark::DoNotOptimize(bsdf.eval_and_pdf(q.eye, q.light));
     });
 }
 BENCHMARK(eval_and_pdf)->Arg(0)->Arg(1);
