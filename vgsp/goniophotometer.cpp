@@ -1,6 +1,7 @@
 #include "vgsp/goniophotometer.h"
 
 #include "renderer/core/parallel.h"
+#include "vgsp/checkpoint_file.h"
 #include "vgsp/path_tally.h"
 
 #include <algorithm>
@@ -19,24 +20,25 @@ constexpr uint64_t kMostPaths = uint64_t{1} << 40;
 constexpr uint64_t kFirstPilotPath = kMostPaths;   ///< the pilot's numbers come after all others
 constexpr size_t kWaitingBytes = size_t{64} << 20; ///< of deposits that wait to be summed
 
+/// How much longer tracing takes between two checkpoints than writing one.
+constexpr double kTracingPerSaving = 20;
+
 struct Task {
-    size_t direction;
+    size_t direction, group;
     uint64_t first, count;
 };
 
 class Run {
   public:
-    Run(const IncidentPathTracer& paths, const GoniophotometerSettings& settings, BsdfTable& table)
-        : paths_(paths), settings_(settings), table_(table),
+    Run(const PathTracers& tracers, const GoniophotometerSettings& settings, BsdfTable& table,
+        const Checkpoint& checkpoint)
+        : tracers_(tracers), settings_(settings), table_(table), checkpoint_(checkpoint),
           waiting_batches_(std::max<size_t>(
-              1, kWaitingBytes / (kBatchPaths * (1 + paths.bands) * sizeof(float)))) {}
+              1, kWaitingBytes / (kBatchPaths * (1 + tracers.tracers[0].bands) * sizeof(float)))) {}
 
-    /// How many paths each direction gets.
-    std::vector<uint64_t> plan() const;
-    /// Traces them and fills the table.
+    /// Fills the table.
     GoniophotometerCounts
-    measure(const std::vector<uint64_t>& planned,
-            const std::function<void(const GoniophotometerProgress&)>& progress);
+    measure(const std::function<void(const GoniophotometerProgress&)>& progress);
 
   private:
     double seconds() const {
@@ -45,25 +47,47 @@ class Run {
     bool time_is_up() const {
         return settings_.max_seconds > 0 && seconds() >= settings_.max_seconds;
     }
+    std::vector<PathTally> empty_tallies() const {
+        return {table_.directions(), PathTally(table_, tracers_.realisations, tracers_.groups)};
+    }
+    /// How many paths each direction gets.
+    std::vector<uint64_t> plan() const;
+    /// Adds the batches of paths [first, until) of a direction, in all groups of bands.
+    void add_tasks(std::vector<Task>& tasks, size_t direction, uint64_t first,
+                   uint64_t until) const;
     /// Traces `tasks`, sorted by direction and then by path, and adds them to the tallies in that
     /// order.
     void trace(std::span<const Task> tasks, std::vector<PathTally>& tallies) const;
-    GoniophotometerProgress state(const std::vector<PathTally>& tallies, double fraction,
-                                  double tracing_since) const;
+    GoniophotometerProgress state(const std::vector<PathTally>& tallies, double fraction) const;
+    /// Takes up an earlier run, if there is one to take up.
+    bool resume(std::vector<uint64_t>& planned, std::vector<PathTally>& tallies) const;
+    /// Writes the checkpoint, if one is wanted; the seconds it took.
+    double save(const std::vector<uint64_t>& planned, const std::vector<PathTally>& tallies) const;
 
-    const IncidentPathTracer& paths_;
+    const PathTracers& tracers_;
     const GoniophotometerSettings& settings_;
     BsdfTable& table_;
+    const Checkpoint& checkpoint_;
     size_t waiting_batches_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    double tracing_since_ = 0;    ///< what came before was planning
+    double resumed_fraction_ = 0; ///< of the work, done by an earlier run
+    uint64_t resumed_paths_ = 0;
 };
+
+void Run::add_tasks(std::vector<Task>& tasks, size_t direction, uint64_t first,
+                    uint64_t until) const {
+    for (uint64_t k = first; k < until; k += kBatchPaths)
+        for (size_t group = 0; group < tracers_.groups; ++group)
+            tasks.push_back({direction, group, k, std::min(kBatchPaths, until - k)});
+}
 
 /// Whether twice the pilot costs fewer paths than it takes off the plan: the margin for the pilot's
 /// uncertainty shrinks by √2.
 bool larger_pilot_pays(const PathTally& pilot, double accuracy) {
     const double margin =
         kPlannedSigmas * pilot.uncertainty() * pilot.error_of_one_path() / square(accuracy);
-    return static_cast<double>(pilot.counts().paths) < (1 - std::numbers::sqrt2 / 2) * margin;
+    return static_cast<double>(pilot.paths()) < (1 - std::numbers::sqrt2 / 2) * margin;
 }
 
 std::vector<uint64_t> Run::plan() const {
@@ -71,17 +95,16 @@ std::vector<uint64_t> Run::plan() const {
     std::vector<uint64_t> planned(table_.directions(), most);
     if (most <= kPilotPaths)
         return planned;
-    std::vector<PathTally> pilots(planned.size(), PathTally(table_));
+    std::vector<PathTally> pilots = empty_tallies();
     std::vector<Task> tasks;
     do {
         tasks.clear();
         for (size_t d = 0; d < pilots.size(); ++d) {
-            const uint64_t done = pilots[d].counts().paths;
+            const uint64_t done = pilots[d].paths();
             const uint64_t until = std::max(kPilotPaths, 2 * done);
             if (done == 0 || (until <= std::min(kMostPilotPaths, most) &&
                               larger_pilot_pays(pilots[d], settings_.accuracy)))
-                for (uint64_t k = done; k < until; k += kBatchPaths)
-                    tasks.push_back({d, kFirstPilotPath + k, kBatchPaths});
+                add_tasks(tasks, d, kFirstPilotPath + done, kFirstPilotPath + until);
         }
         trace(tasks, pilots);
     } while (!tasks.empty());
@@ -104,8 +127,8 @@ void Run::trace(std::span<const Task> tasks, std::vector<PathTally>& tallies) co
         const std::span<const Task> chunk = tasks.first(std::min(tasks.size(), waiting_batches_));
         std::vector<PathBatch> found(chunk.size());
         parallel_for(chunk.size(), [&](size_t i) {
-            found[i] = trace_batch(paths_, table_, chunk[i].direction, settings_.seed,
-                                   chunk[i].first, chunk[i].count);
+            found[i] = trace_batch(tracers_, table_, chunk[i].direction, chunk[i].group,
+                                   settings_.seed, chunk[i].first, chunk[i].count);
         });
         std::vector<size_t> first_of_direction;
         for (size_t i = 0; i < chunk.size(); ++i)
@@ -120,8 +143,7 @@ void Run::trace(std::span<const Task> tasks, std::vector<PathTally>& tallies) co
     }
 }
 
-GoniophotometerProgress Run::state(const std::vector<PathTally>& tallies, double fraction,
-                                   double tracing_since) const {
+GoniophotometerProgress Run::state(const std::vector<PathTally>& tallies, double fraction) const {
     GoniophotometerProgress state{};
     uint64_t done = 0;
     for (const PathTally& tally : tallies) {
@@ -130,51 +152,78 @@ GoniophotometerProgress Run::state(const std::vector<PathTally>& tallies, double
     }
     state.fraction = fraction;
     state.seconds = seconds();
-    const double tracing = state.seconds - tracing_since;
-    state.paths_per_second = static_cast<double>(done) / tracing;
-    state.seconds_left = tracing * (1 - fraction) / fraction;
+    const double tracing = state.seconds - tracing_since_;
+    state.paths_per_second = static_cast<double>(done - resumed_paths_) / tracing;
+    state.seconds_left = tracing * (1 - fraction) / (fraction - resumed_fraction_);
     if (settings_.max_seconds > 0)
         state.seconds_left =
             std::clamp(settings_.max_seconds - state.seconds, 0.0, state.seconds_left);
     return state;
 }
 
+bool Run::resume(std::vector<uint64_t>& planned, std::vector<PathTally>& tallies) const {
+    if (!checkpoint_.resume || !std::filesystem::exists(checkpoint_.path))
+        return false;
+    read_checkpoint(checkpoint_.path, table_, planned, tallies);
+    return true;
+}
+
+double Run::save(const std::vector<uint64_t>& planned,
+                 const std::vector<PathTally>& tallies) const {
+    if (checkpoint_.path.empty())
+        return 0;
+    const double since = seconds();
+    write_checkpoint(checkpoint_.path, table_, planned, tallies);
+    return seconds() - since;
+}
+
 /// Wave after wave, all directions advance by the same share of what is planned for them. How
 /// large a wave is changes nothing in the result: it follows the machine's speed.
 GoniophotometerCounts
-Run::measure(const std::vector<uint64_t>& planned,
-             const std::function<void(const GoniophotometerProgress&)>& progress) {
-    const size_t directions = planned.size();
-    std::vector<PathTally> tallies(directions, PathTally(table_));
-    double total = 0;
-    for (const uint64_t paths : planned)
-        total += static_cast<double>(paths);
+Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress) {
+    std::vector<uint64_t> planned;
+    std::vector<PathTally> tallies = empty_tallies();
+    if (!resume(planned, tallies)) {
+        planned = plan();
+        save(planned, tallies);
+    }
+    double total = 0, done = 0;
+    for (size_t d = 0; d < planned.size(); ++d) {
+        total += static_cast<double>(planned[d]);
+        done += static_cast<double>(tallies[d].paths());
+        resumed_paths_ += tallies[d].counts().paths;
+    }
+    double share = resumed_fraction_ = done / total;
+    tracing_since_ = seconds();
     double wave = 16.0 * thread_count(); // batches
-    double share = 0;
-    const double tracing_since = seconds();
-    while (share < 1 && (share == 0 || !time_is_up())) {
+    for (bool first = true; share < 1 && (first || !time_is_up()); first = false) {
         const double wave_since = seconds();
         share = std::min(1.0, share + wave * kBatchPaths / total);
         std::vector<Task> tasks;
-        for (size_t d = 0; d < directions; ++d) {
+        for (size_t d = 0; d < planned.size(); ++d) {
             const double wanted = std::ceil(share * static_cast<double>(planned[d]) / kBatchPaths);
             const uint64_t until =
                 share == 1 ? planned[d]
                            : std::min(planned[d], static_cast<uint64_t>(wanted) * kBatchPaths);
-            for (uint64_t k = tallies[d].counts().paths; k < until; k += kBatchPaths)
-                tasks.push_back({d, k, std::min(kBatchPaths, until - k)});
+            add_tasks(tasks, d, tallies[d].paths(), until);
         }
         trace(tasks, tallies);
-        if (progress)
-            progress(state(tallies, share, tracing_since));
         const double took = seconds() - wave_since;
-        if (took < 0.5)
+        const double saving = share < 1 ? save(planned, tallies) : 0;
+        if (progress)
+            progress(state(tallies, share));
+        const double wanted = std::max(1.0, kTracingPerSaving * saving);
+        if (took < 0.5 * wanted)
             wave *= 2;
-        else if (took > 1.5)
-            wave = std::max(4.0 * thread_count(), wave / 2);
+        else if (took > 1.5 * wanted)
+            wave /= 2;
+        if (settings_.max_seconds > 0)
+            wave = std::min(wave, wave * (settings_.max_seconds - seconds()) / took);
+        wave = std::max(wave, 4.0 * thread_count());
     }
+    table_.realisation_error.assign(tracers_.realisations > 1 ? planned.size() : 0, 0);
     GoniophotometerCounts counts;
-    for (size_t d = 0; d < directions; ++d) {
+    for (size_t d = 0; d < planned.size(); ++d) {
         tallies[d].write(table_, d);
         counts += tallies[d].counts();
     }
@@ -183,19 +232,23 @@ Run::measure(const std::vector<uint64_t>& planned,
 
 } // namespace
 
-GoniophotometerCounts measure(const kernel::FibreTracer& tracer,
+GoniophotometerCounts measure(std::span<const kernel::FibreTracer> realisations,
                               std::span<const FibreOptics> optics,
                               const GoniophotometerSettings& settings, BsdfTable& table,
-                              const std::function<void(const GoniophotometerProgress&)>& progress) {
+                              const std::function<void(const GoniophotometerProgress&)>& progress,
+                              const Checkpoint& checkpoint) {
     if (!(settings.accuracy > 0))
         throw std::invalid_argument("the accuracy asked for is not positive");
     if (settings.max_events < 1)
         throw std::invalid_argument("a path is allowed no events");
+    if (realisations.empty() || realisations.size() > kBatchPaths)
+        throw std::invalid_argument("no realisation of the cloth, or too many");
     const size_t bands = table.bands.count();
-    const std::vector<FibreMedium> media = fibre_media(optics, bands, tracer);
-    const IncidentPathTracer paths{tracer, media, bands, settings.max_events, true};
-    Run run(paths, settings, table);
-    return run.measure(run.plan(), progress);
+    const std::vector<FibreMedium> media = fibre_media(optics, bands, realisations[0]);
+    PathTracers tracers{realisations.size(), 1, {}};
+    for (const kernel::FibreTracer& tracer : realisations)
+        tracers.tracers.push_back({tracer, media, bands, settings.max_events, true});
+    return Run(tracers, settings, table, checkpoint).measure(progress);
 }
 
 } // namespace rapport

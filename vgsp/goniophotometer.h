@@ -4,6 +4,7 @@
 #include "renderer/kernel/fibre_tracer.h"
 #include "vgsp/fibre_step.h"
 
+#include <filesystem>
 #include <functional>
 #include <span>
 
@@ -11,7 +12,7 @@ namespace rapport {
 
 struct GoniophotometerSettings {
     double accuracy = 0.2;  ///< the ε asked for (design: RMS error over the mean, per direction)
-    uint64_t max_paths = 0; ///< per incident direction; 0 = no bound
+    uint64_t max_paths = 0; ///< per incident direction (and band, if traced apart); 0 = no bound
     double max_seconds = 0; ///< for the whole run; 0 = no bound
     int max_events = 4096;  ///< boundary events of a path before it counts as capped
     uint64_t seed = 0;
@@ -32,11 +33,21 @@ struct GoniophotometerCounts {
     uint64_t lost = 0;   ///< of these, lost among the fibres (FibreTracer::Flight::lost)
 };
 
+/// Where a run keeps what it has summed so far: a file that is replaced whole at each increment.
+/// A run that goes on from it ends with the same numbers as one that was never interrupted. It is
+/// for the caller to remove it, once the result is safe.
+struct Checkpoint {
+    std::filesystem::path path; ///< empty = none is kept
+    bool resume = false;        ///< go on from the file, if there is one
+};
+
 /// Measures the scattering of any periodic assembly of fibres for the incident directions and
-/// exit mesh already laid out in `table` (its intensity, unscattered, absorbed, capped, accuracy
-/// and paths arrays are filled). `optics` is indexed by FibreChain::kind. Path k of direction d
-/// depends on (seed, d, k) alone, so the result does not depend on the threads. Light of every
-/// path is accounted for as reflected, transmitted, unscattered, absorbed or capped.
+/// exit mesh already laid out in `table` (its arrays are filled). Several assemblies are
+/// realisations of one random cloth: they share the paths of every direction equally, and the
+/// spread between them is reported apart from the noise. `optics` is indexed by FibreChain::kind;
+/// where a refractive index differs between the bands, each band has paths of its own. Path k of
+/// direction d depends on (seed, d, k) alone, so the result does not depend on the threads. Light
+/// of every path is accounted for as reflected, transmitted, unscattered, absorbed or capped.
 ///
 /// How many paths a direction gets is fixed before they are traced, by a pilot whose own paths are
 /// thrown away: to stop when the estimate looks good would make it look better than it is. The
@@ -45,10 +56,24 @@ struct GoniophotometerCounts {
 /// depend on the machine; the first increment (at least one batch of each direction) is made even
 /// if the time is up.
 ///
+/// The pilot is the checkpoint's first increment. A checkpoint knows the run that it belongs to by
+/// `table.metadata`, which must tell all that decides the result, and the incident directions:
+/// FileError for one of another run.
+///
 /// Throws std::invalid_argument for optics or settings outside their domain.
 GoniophotometerCounts
+measure(std::span<const kernel::FibreTracer> realisations, std::span<const FibreOptics> optics,
+        const GoniophotometerSettings& settings, BsdfTable& table,
+        const std::function<void(const GoniophotometerProgress&)>& progress = {},
+        const Checkpoint& checkpoint = {});
+
+/// The same for an assembly that is not random.
+inline GoniophotometerCounts
 measure(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
         const GoniophotometerSettings& settings, BsdfTable& table,
-        const std::function<void(const GoniophotometerProgress&)>& progress = {});
+        const std::function<void(const GoniophotometerProgress&)>& progress = {},
+        const Checkpoint& checkpoint = {}) {
+    return measure(std::span(&tracer, 1), optics, settings, table, progress, checkpoint);
+}
 
 } // namespace rapport

@@ -1,6 +1,7 @@
 #include "vgsp/measure_cloth.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/rng.h"
 #include "vgsp/colour_solver.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,17 @@
 
 namespace rapport {
 namespace {
+
+constexpr size_t kMostSegments = 10'000'000; ///< of all realisations, about 2 GB ready to trace
+
+/// The first has the run's own seed, so that it is the cloth that a single one would be.
+uint64_t realisation_seed(uint64_t seed, int realisation) {
+    if (realisation == 0)
+        return seed;
+    CounterRng random(seed, Purpose::realisation, 0, static_cast<uint64_t>(realisation));
+    const uint64_t high = random.bits();
+    return high << 32 | random.bits();
+}
 
 /// FNV-1a, 64 bits: tells one cloth's text from another's, the same on every machine. No defence
 /// against forgery.
@@ -38,27 +50,12 @@ void dye(FibreOptics& optics, const FibreSpec& fibre, const ColourSolver& solver
     }
 }
 
-/// Of warp and weft, in the order of FibreKind.
-std::vector<FibreOptics> cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
-                                      const GoniophotometerSettings& settings) {
-    const size_t bands = cloth.bands.count();
-    std::vector<FibreOptics> optics{undyed(cloth.warp.fibre, bands),
-                                    undyed(cloth.weft.fibre, bands)};
-    if (cloth.warp.fibre.color || cloth.weft.fibre.color) {
-        const ColourSolver solver(tracer, optics, settings.max_events, settings.seed);
-        if (cloth.warp.fibre.color)
-            dye(optics[kWarpFibre], cloth.warp.fibre, solver, cloth, "warp.fibre.color");
-        if (cloth.weft.fibre.color)
-            dye(optics[kWeftFibre], cloth.weft.fibre, solver, cloth, "weft.fibre.color");
-    }
-    return optics;
-}
-
 /// Numbers in the shortest form that reads back the same.
 std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroElement& element,
                                             const MicroElementOptions& geometry,
                                             const std::vector<FibreOptics>& optics,
-                                            const GoniophotometerSettings& settings) {
+                                            const MeasureOptions& options) {
+    const GoniophotometerSettings& settings = options.goniophotometer;
     return {
         {"program", fmt::format("rapport {}", RAPPORT_VERSION)},
         {"cloth_name", cloth.name},
@@ -69,6 +66,7 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
         {"accuracy_asked", fmt::format("{}", settings.accuracy)},
         {"max_paths", fmt::format("{}", settings.max_paths)},
         {"max_events", fmt::format("{}", settings.max_events)},
+        {"realisations", fmt::format("{}", options.realisations)},
         {"max_turn_degrees", fmt::format("{}", geometry.max_turn_degrees)},
         {"dither", geometry.dither ? "yes" : "no"},
         {"draft_repeats", fmt::format("{} x {}", element.repeats_x, element.repeats_y)},
@@ -93,9 +91,26 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
 
 } // namespace
 
+std::vector<FibreOptics> cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
+                                      const GoniophotometerSettings& settings) {
+    const size_t bands = cloth.bands.count();
+    std::vector<FibreOptics> optics{undyed(cloth.warp.fibre, bands),
+                                    undyed(cloth.weft.fibre, bands)};
+    if (cloth.warp.fibre.color || cloth.weft.fibre.color) {
+        const ColourSolver solver(tracer, optics, settings.max_events, settings.seed);
+        if (cloth.warp.fibre.color)
+            dye(optics[kWarpFibre], cloth.warp.fibre, solver, cloth, "warp.fibre.color");
+        if (cloth.weft.fibre.color)
+            dye(optics[kWeftFibre], cloth.weft.fibre, solver, cloth, "weft.fibre.color");
+    }
+    return optics;
+}
+
 ClothMeasurement
 measure_cloth(const Cloth& cloth, const MeasureOptions& options,
               const std::function<void(const GoniophotometerProgress&)>& progress) {
+    if (options.realisations < 1)
+        throw std::invalid_argument("no realisation of the cloth");
     const GoniophotometerSettings& settings = options.goniophotometer;
     const MicroElementOptions geometry{.seed = settings.seed};
     ClothMeasurement result{options.incidence.empty()
@@ -103,10 +118,23 @@ measure_cloth(const Cloth& cloth, const MeasureOptions& options,
                                 : make_partial_table(cloth.bands, options.incidence),
                             build_micro_element(cloth, geometry),
                             {}};
-    const kernel::FibreTracer tracer(result.element.fibres);
-    const std::vector<FibreOptics> optics = cloth_optics(cloth, tracer, settings);
-    result.counts = measure(tracer, optics, settings, result.table, progress);
-    result.table.metadata = metadata(cloth, result.element, geometry, optics, settings);
+    const size_t segments = result.element.segments;
+    if (options.realisations > 1 && segments * options.realisations > kMostSegments)
+        throw FileError(cloth.path.string(), "realisations",
+                        fmt::format("at most {} of {} cylinders each",
+                                    std::max<size_t>(1, kMostSegments / segments), segments),
+                        fmt::format("{}", options.realisations));
+    std::vector<kernel::FibreTracer> realisations;
+    realisations.emplace_back(result.element.fibres);
+    for (int i = 1; i < options.realisations; ++i) {
+        MicroElementOptions other = geometry;
+        other.seed = realisation_seed(settings.seed, i);
+        realisations.emplace_back(build_micro_element(cloth, other).fibres);
+    }
+    const std::vector<FibreOptics> optics = cloth_optics(cloth, realisations[0], settings);
+    result.table.metadata = metadata(cloth, result.element, geometry, optics, options);
+    result.counts =
+        measure(realisations, optics, settings, result.table, progress, options.checkpoint);
     return result;
 }
 

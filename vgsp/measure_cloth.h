@@ -14,17 +14,28 @@ struct MeasureOptions {
     /// (side, θ, φ) in radians; empty = the whole grid of the sides asked for.
     std::vector<IncidentDirection> incidence;
     bool front = true, back = true;
+    /// Micro-elements with random numbers of their own that are averaged; at least 1. How many of
+    /// them stand for a cloth is a matter of the measurement, like its accuracy, and none of the
+    /// cloth, whose file tells what they have in common.
+    int realisations = 1;
+    Checkpoint checkpoint{};
 };
 
 struct ClothMeasurement {
     BsdfTable table;
-    MicroElement element;
+    MicroElement element; ///< the first realisation
     GoniophotometerCounts counts;
 };
 
+/// What the cloth's fibres are made of, by FibreKind: wanted colours become absorption, solved for
+/// in the cloth's own micro-element. FileError (at the cloth's path) for a colour out of reach.
+std::vector<FibreOptics> cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
+                                      const GoniophotometerSettings& settings);
+
 /// cloth → micro-element → (colours solved for absorption) → table, with everything that decides
-/// the result in its metadata. One seed serves the fibres' dither, the colours and the paths.
-/// FileError (at the cloth's path) for a cloth that cannot exist, or a colour out of reach.
+/// the result in its metadata. One seed serves the fibres, the colours and the paths; the colours
+/// are solved for in the first realisation. FileError (at the cloth's path) for a cloth that cannot
+/// exist, a colour out of reach, or more realisations than fit into memory.
 ClothMeasurement
 measure_cloth(const Cloth& cloth, const MeasureOptions& options,
               const std::function<void(const GoniophotometerProgress&)>& progress = {});

@@ -1,7 +1,10 @@
 #include "vgsp/path_tally.h"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 namespace rapport {
 
@@ -14,86 +17,86 @@ GoniophotometerCounts& operator+=(GoniophotometerCounts& a, const Goniophotomete
     return a;
 }
 
-PathBatch trace_batch(const IncidentPathTracer& paths, const BsdfTable& table, size_t direction,
-                      uint64_t seed, uint64_t first, uint64_t count) {
-    PathBatch batch;
-    batch.bins.reserve(count);
-    batch.weights.reserve(count * paths.bands);
-    batch.unscattered.assign(paths.bands, 0.0);
-    batch.capped.assign(paths.bands, 0.0);
-    const IncidentDirection& incident = table.incident[direction];
-    IncidentPath path;
-    for (uint64_t k = first; k < first + count; ++k) {
-        CounterRng rng(seed, Purpose::incident_path, direction, k);
-        paths.trace(incident, rng, path);
-        const FibreLight& light = path.light;
-        batch.counts += {1, light.events, light.overlaps, path.fate == PathFate::capped,
-                         path.fate == PathFate::capped &&
-                             light.events < static_cast<uint32_t>(paths.max_events)};
-        if (path.fate == PathFate::absorbed)
-            continue;
-        if (path.fate == PathFate::scattered) {
-            const bool to_front = light.direction.z > 0;
-            const bool transmitted = to_front != (incident.side == Side::front);
-            batch.bins.push_back(static_cast<uint32_t>((transmitted ? table.exits.bins() : 0) +
-                                                       table.exits.bin(light.direction)));
-            for (size_t band = 0; band < paths.bands; ++band)
-                batch.weights.push_back(static_cast<float>(path.weight(band)));
-            continue;
-        }
-        auto& sums = path.fate == PathFate::capped ? batch.capped : batch.unscattered;
-        for (size_t band = 0; band < paths.bands; ++band)
-            sums[band] += path.weight(band);
-    }
-    return batch;
-}
-
-PathTally::PathTally(const BsdfTable& table) : bands_(table.bands.count()) {
+PathTally::PathTally(const BsdfTable& table, size_t realisations, size_t groups)
+    : bands_(table.bands.count()), groups_(groups), realisation_paths_(realisations) {
     const size_t bins = table.exits.bins();
     solid_angle_.resize(2 * bins);
     for (size_t bin = 0; bin < 2 * bins; ++bin)
         solid_angle_[bin] = table.exits.solid_angle(bin % bins);
     sum_.assign(2 * bins * bands_, 0.0);
     sum_mean2_.assign(2 * bins, 0.0);
+    quarter_.assign(2 * bins * 4, 0.0);
+    if (realisations > 1)
+        realisation_.assign(2 * bins * realisations, 0.0);
     unscattered_.assign(bands_, 0.0);
     capped_.assign(bands_, 0.0);
+    lost_.assign(bands_, 0.0);
 }
 
 void PathTally::add(const PathBatch& batch) {
+    const size_t group_bands = bands_ / groups_, first_band = batch.group * group_bands;
+    const size_t realisations = realisation_paths_.size();
     const float* weight = batch.weights.data();
-    for (const uint32_t bin : batch.bins) {
-        double mean = 0;
-        for (size_t band = 0; band < bands_; ++band, ++weight) {
-            sum_[bin * bands_ + band] += *weight;
-            mean += *weight;
+    const uint32_t* quarter = batch.quarters.data();
+    for (size_t realisation = 0; realisation < realisations; ++realisation) {
+        realisation_paths_[realisation] += batch.paths[realisation];
+        for (const uint32_t* end = quarter + batch.deposits[realisation]; quarter != end;
+             ++quarter) {
+            const size_t bin = *quarter / 4;
+            double mean = 0;
+            for (size_t band = 0; band < group_bands; ++band, ++weight) {
+                sum_[bin * bands_ + first_band + band] += *weight;
+                mean += *weight;
+            }
+            mean /= static_cast<double>(bands_);
+            const double mean2 = square(mean);
+            sum_mean2_[bin] += mean2;
+            sum_density2_[0] += square(mean2 / solid_angle_[bin]);
+            quarter_[*quarter] += mean;
+            if (realisations > 1)
+                realisation_[bin * realisations + realisation] += mean;
         }
-        const double mean2 = square(mean / bands_);
-        sum_mean2_[bin] += mean2;
-        sum_density2_ += square(mean2 / solid_angle_[bin]);
     }
-    for (size_t band = 0; band < bands_; ++band) {
-        unscattered_[band] += batch.unscattered[band];
-        capped_[band] += batch.capped[band];
+    for (size_t band = 0; band < group_bands; ++band) {
+        unscattered_[first_band + band] += batch.unscattered[band];
+        capped_[first_band + band] += batch.capped[band];
+        lost_[first_band + band] += batch.lost[band];
     }
     counts_ += batch.counts;
 }
 
+double PathTally::total() const {
+    const double sum = std::accumulate(sum_.begin(), sum_.end(), 0.0);
+    return sum / static_cast<double>(bands_ * paths());
+}
+
+double PathTally::scale() const {
+    const double mean = total();
+    return mean > 0 ? 4 * kPi / square(mean) : 0.0;
+}
+
 double PathTally::error_of_one_path() const {
-    const double n = static_cast<double>(counts_.paths);
-    double total = 0, variance = 0;
+    const double n = static_cast<double>(paths());
+    if (n < 2)
+        return 0;
+    const size_t group_bands = bands_ / groups_;
+    double variance = 0;
     for (size_t bin = 0; bin < solid_angle_.size(); ++bin) {
-        const double* sums = &sum_[bin * bands_];
-        const double mean = std::accumulate(sums, sums + bands_, 0.0) / (bands_ * n);
-        total += mean;
-        if (n > 1)
-            variance += (sum_mean2_[bin] / n - mean * mean) * n / (n - 1) / solid_angle_[bin];
+        // Groups of bands are traced apart, so that their variances add.
+        double squared_means = 0;
+        for (size_t group = 0; group < groups_; ++group) {
+            const double* sums = &sum_[bin * bands_ + group * group_bands];
+            const double sum = std::accumulate(sums, sums + group_bands, 0.0);
+            squared_means += square(sum / (static_cast<double>(bands_) * n));
+        }
+        variance += (sum_mean2_[bin] / n - squared_means) * n / (n - 1) / solid_angle_[bin];
     }
-    return total > 0 ? 4 * kPi * std::max(variance, 0.0) / square(total) : 0.0;
+    return scale() * std::max(variance, 0.0);
 }
 
 double PathTally::uncertainty() const {
-    const double n = static_cast<double>(counts_.paths);
-    const double total = std::accumulate(sum_.begin(), sum_.end(), 0.0) / (bands_ * n);
+    const double n = static_cast<double>(paths());
+    const double total = this->total();
     if (!(total > 0))
         return std::numeric_limits<double>::infinity();
     // By the delta method. The number is (D − M)/total² with D = Σ_b E[w²]_b/Ω_b, a mean over the
@@ -109,18 +112,65 @@ double PathTally::uncertainty() const {
         peaks2 += square_mean * square(mean / solid_angle_[bin]);
         mean2 += square_mean;
     }
-    const double of_density = std::max(sum_density2_ / n - square(density), 0.0);
+    const double of_density = std::max(sum_density2_[0] / n - square(density), 0.0);
     const double of_peaks = 4 * std::max(peaks2 - square(peaks), 0.0);
     const double of_total = 4 * std::max(mean2 / square(total) - 1, 0.0);
     return std::sqrt(((of_density + of_peaks) / square(density - peaks) + of_total) / n);
 }
 
 double PathTally::accuracy() const {
-    return std::sqrt(error_of_one_path() / static_cast<double>(counts_.paths));
+    return std::sqrt(error_of_one_path() / static_cast<double>(paths()));
+}
+
+double PathTally::bin_error() const {
+    const double n = static_cast<double>(paths());
+    if (n < 2)
+        return 0;
+    double change = 0;
+    for (size_t bin = 0; bin < solid_angle_.size(); ++bin) {
+        // Ω/4·Σ_q (Φ_q/(Ω/4) − Φ/Ω)² = (4·Σ_q Φ_q² − Φ²)/Ω. Of estimated fluxes its mean is larger
+        // by (3·E[w²] − itself)/n, a path falling into one quarter alone.
+        double flux = 0, squares = 0;
+        for (size_t quarter = 4 * bin; quarter < 4 * bin + 4; ++quarter) {
+            flux += quarter_[quarter] / n;
+            squares += square(quarter_[quarter] / n);
+        }
+        change += (n * (4 * squares - square(flux)) - 3 * sum_mean2_[bin] / n) / (n - 1) /
+                  solid_angle_[bin];
+    }
+    return std::sqrt(scale() * std::max(change, 0.0));
+}
+
+double PathTally::realisation_error() const {
+    const size_t realisations = realisation_paths_.size();
+    const double n = static_cast<double>(paths()), r = static_cast<double>(realisations);
+    if (realisations < 2)
+        return std::numeric_limits<double>::quiet_NaN();
+    if (n < 2 * r)
+        return 0;
+    double spread = 0;
+    for (size_t bin = 0; bin < solid_angle_.size(); ++bin) {
+        const double* sums = &realisation_[bin * realisations];
+        double mean = 0, squares = 0, explained = 0, inverse_paths = 0;
+        for (size_t i = 0; i < realisations; ++i) {
+            const double paths = static_cast<double>(realisation_paths_[i]) / groups_;
+            const double of_one = sums[i] / paths;
+            mean += of_one / r;
+            squares += square(of_one);
+            explained += paths * square(of_one);
+            inverse_paths += 1 / paths / r;
+        }
+        // One-way analysis of variance: between the realisations' means, less what the paths
+        // within a realisation scatter them by.
+        const double between = (squares - r * square(mean)) / (r - 1);
+        const double within = (sum_mean2_[bin] - explained) / (n - r);
+        spread += (between - within * inverse_paths) / solid_angle_[bin];
+    }
+    return std::sqrt(scale() * std::max(spread, 0.0) / r);
 }
 
 void PathTally::write(BsdfTable& table, size_t direction) const {
-    const double n = static_cast<double>(counts_.paths);
+    const double n = static_cast<double>(paths());
     const size_t bins = table.exits.bins();
     std::vector<double> scattered(bands_, 0.0);
     for (size_t bin = 0; bin < 2 * bins; ++bin)
@@ -135,11 +185,49 @@ void PathTally::write(BsdfTable& table, size_t direction) const {
         const double unscattered = unscattered_[band] / n, capped = capped_[band] / n;
         table.unscattered[i] = static_cast<float>(unscattered);
         table.capped[i] = static_cast<float>(capped);
+        table.lost[i] = static_cast<float>(lost_[band] / n);
         table.absorbed[i] =
             static_cast<float>(std::max(0.0, 1 - scattered[band] - unscattered - capped));
     }
     table.accuracy[direction] = static_cast<float>(accuracy());
-    table.paths[direction] = counts_.paths;
+    table.bin_error[direction] = static_cast<float>(bin_error());
+    if (!table.realisation_error.empty())
+        table.realisation_error[direction] = static_cast<float>(realisation_error());
+    table.paths[direction] = paths();
+}
+
+namespace {
+
+/// Lists of numbers, const or not, to be gone through one after the other.
+template <class... Lists> auto lists_of(Lists&... lists) { return std::array{std::span(lists)...}; }
+
+} // namespace
+
+std::vector<double> PathTally::sums() const {
+    std::vector<double> all;
+    for (const auto list : lists_of(sum_, sum_mean2_, quarter_, realisation_, unscattered_, capped_,
+                                    lost_, sum_density2_))
+        all.insert(all.end(), list.begin(), list.end());
+    return all;
+}
+
+std::vector<uint64_t> PathTally::path_counts() const {
+    std::vector<uint64_t> all{counts_.paths, counts_.events, counts_.overlaps, counts_.capped,
+                              counts_.lost};
+    all.insert(all.end(), realisation_paths_.begin(), realisation_paths_.end());
+    return all;
+}
+
+void PathTally::restore(std::span<const double> sums, std::span<const uint64_t> path_counts) {
+    if (sums.size() != this->sums().size() || path_counts.size() != this->path_counts().size())
+        throw std::invalid_argument("a tally's sums are of another run");
+    for (const auto list : lists_of(sum_, sum_mean2_, quarter_, realisation_, unscattered_, capped_,
+                                    lost_, sum_density2_)) {
+        std::copy_n(sums.begin(), list.size(), list.begin());
+        sums = sums.subspan(list.size());
+    }
+    counts_ = {path_counts[0], path_counts[1], path_counts[2], path_counts[3], path_counts[4]};
+    std::copy(path_counts.begin() + 5, path_counts.end(), realisation_paths_.begin());
 }
 
 } // namespace rapport

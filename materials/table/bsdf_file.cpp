@@ -224,7 +224,11 @@ class Reader {
         table_.unscattered = shares("unscattered", {directions, bands});
         table_.absorbed = shares("absorbed", {directions, bands});
         table_.capped = shares("capped", {directions, bands});
+        table_.lost = shares("lost", {directions, bands});
         table_.accuracy = shares("accuracy", {directions});
+        table_.bin_error = shares("bin_error", {directions});
+        if (has("realisation_error"))
+            table_.realisation_error = shares("realisation_error", {directions});
         table_.paths = array<uint64_t>("paths", {directions});
         for (size_t d = 0; d < directions; ++d) {
             const auto reflected = table_.reflectance(d), transmitted = table_.transmittance(d);
@@ -289,7 +293,11 @@ void write_table(const BsdfTable& table, const std::filesystem::path& path) {
     fields["unscattered"] = TensorField::of<float>({directions, bands}, table.unscattered);
     fields["absorbed"] = TensorField::of<float>({directions, bands}, table.absorbed);
     fields["capped"] = TensorField::of<float>({directions, bands}, table.capped);
+    fields["lost"] = TensorField::of<float>({directions, bands}, table.lost);
     fields["accuracy"] = TensorField::of<float>({directions}, table.accuracy);
+    fields["bin_error"] = TensorField::of<float>({directions}, table.bin_error);
+    if (!table.realisation_error.empty())
+        fields["realisation_error"] = TensorField::of<float>({directions}, table.realisation_error);
     fields["paths"] = TensorField::of<uint64_t>({directions}, table.paths);
     write_tensor_file(fields, path);
 }

@@ -16,7 +16,9 @@ void size_arrays(BsdfTable& table) {
     table.unscattered.assign(directions * bands, 0);
     table.absorbed.assign(directions * bands, 0);
     table.capped.assign(directions * bands, 0);
+    table.lost.assign(directions * bands, 0);
     table.accuracy.assign(directions, 0);
+    table.bin_error.assign(directions, 0);
     table.paths.assign(directions, 0);
 }
 
@@ -49,6 +51,27 @@ std::vector<double> BsdfTable::reflectance(size_t direction) const {
 
 std::vector<double> BsdfTable::transmittance(size_t direction) const {
     return flux(*this, direction, 1);
+}
+
+MeasurementError BsdfTable::error(size_t direction) const {
+    MeasurementError error{accuracy[direction], bin_error[direction], std::nullopt, 0};
+    if (!realisation_error.empty())
+        error.realisation = realisation_error[direction];
+    const auto first = capped.begin() + static_cast<ptrdiff_t>(direction * bands.count());
+    error.discarded = *std::max_element(first, first + static_cast<ptrdiff_t>(bands.count()));
+    return error;
+}
+
+MeasurementError BsdfTable::largest_error() const {
+    MeasurementError largest;
+    for (size_t d = 0; d < directions(); ++d) {
+        const MeasurementError here = error(d);
+        largest.noise = std::max(largest.noise, here.noise);
+        largest.bins = std::max(largest.bins, here.bins);
+        largest.realisation = std::max(largest.realisation, here.realisation); // none is least
+        largest.discarded = std::max(largest.discarded, here.discarded);
+    }
+    return largest;
 }
 
 float BsdfTable::largest_accuracy() const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,16 @@ enum class Side : uint8_t { front = 0, back = 1 };
 struct IncidentDirection {
     Side side = Side::front;
     double theta = 0, phi = 0;
+};
+
+/// How far a measured direction is from the truth, by cause. The first three are RMS differences of
+/// the intensity over both hemispheres, relative to its mean, in the mean over the bands.
+struct MeasurementError {
+    double noise = 0; ///< ε: of a finite number of paths
+    double bins = 0;  ///< what a mesh twice as fine would still change
+    /// Of a finite number of realisations of the random cloth; nothing is known of it from one.
+    std::optional<double> realisation;
+    double discarded = 0; ///< share of the incident flux that was given up, in the worst band
 };
 
 /// A cloth's measured BSDF. What is stored is intensity I = f·cosθo [1/sr], per unit of incident
@@ -39,9 +50,14 @@ struct BsdfTable {
     std::vector<float> intensity;   ///< [D, 2, B, bands]
     std::vector<float> unscattered; ///< [D, bands], share of incident flux that met no event
     std::vector<float> absorbed;    ///< [D, bands]
-    std::vector<float> capped;      ///< [D, bands]
-    std::vector<float> accuracy;    ///< [D], ε
+    std::vector<float> capped;      ///< [D, bands], given up: out of events, or lost
+    std::vector<float> lost;        ///< [D, bands], the part of `capped` lost among the fibres
     std::vector<uint64_t> paths;    ///< [D]
+
+    std::vector<float> accuracy;  ///< [D], MeasurementError::noise
+    std::vector<float> bin_error; ///< [D], MeasurementError::bins
+    /// [D], MeasurementError::realisation; empty for a single realisation.
+    std::vector<float> realisation_error;
 
     /// Everything that decides the result (cloth source and hash, seed, parameters, program
     /// version), as text; never the time, the threads or a path.
@@ -54,8 +70,10 @@ struct BsdfTable {
     /// Shares of the incident flux per band: Σ_b intensity·Ω over block 0 or 1.
     std::vector<double> reflectance(size_t direction) const;
     std::vector<double> transmittance(size_t direction) const;
-    /// A table is as accurate as its worst direction; 0 for a table without directions.
-    float largest_accuracy() const;
+    MeasurementError error(size_t direction) const;
+    /// The largest of each over the directions: a table is as good as its worst.
+    MeasurementError largest_error() const;
+    float largest_accuracy() const; ///< its ε; 0 for a table without directions
 };
 
 /// Lays out a table's directions and sizes its arrays (zeros).
@@ -71,12 +89,14 @@ BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> 
 /// allocation is made before a size is checked against the file's.
 ///
 /// The arrays bear the names of the members above (`intensity`, `unscattered`, `absorbed`,
-/// `capped`, `accuracy`, `paths`, `grid_theta`, `grid_phi`, `grid_index`), and besides them stand
+/// `capped`, `lost`, `paths`, `accuracy`, `bin_error`, `realisation_error`, `grid_theta`,
+/// `grid_phi`, `grid_index`), and besides them stand
 /// `incident_side` (0 front, 1 back), `incident_theta`, `incident_phi`, the mesh of exits as
 /// `ring_bins` and `solid_angle` [sr], `band_edges_nm` (absent for RGB), and as texts `band_names`
 /// (a JSON array), `metadata` (a JSON object) and `description`. Angles are in radians, as in the
 /// other tables of this container, so that they survive the round trip bit for bit.
-/// `grid_*` are absent from a partial table. Fields of other names are ignored.
+/// `grid_*` are absent from a partial table, `realisation_error` from one of a single realisation.
+/// Fields of other names are ignored.
 void write_table(const BsdfTable& table, const std::filesystem::path& path);
 BsdfTable read_table(const std::filesystem::path& path);
 

@@ -24,18 +24,32 @@ DirectionMesh::DirectionMesh(int rings) {
     }
 }
 
-size_t DirectionMesh::bin(const glm::dvec3& w) const {
-    return bin(std::atan2(std::hypot(w.x, w.y), std::abs(w.z)), azimuth(w));
-}
+namespace {
 
-size_t DirectionMesh::bin(double theta, double phi) const {
+double polar_angle(const glm::dvec3& w) { return std::atan2(std::hypot(w.x, w.y), std::abs(w.z)); }
+
+} // namespace
+
+DirectionMesh::Place DirectionMesh::place(double theta, double phi) const {
     const double outermost = rings() - 1;
     const int ring = static_cast<int>(std::clamp(theta / ring_width_, 0.0, outermost));
-    const double turns = phi / (2 * kPi);
-    const size_t count = ring_bins(ring);
-    // A tiny negative angle leaves a fraction that rounds to 1: that is the last bin.
-    const auto step = static_cast<size_t>((turns - std::floor(turns)) * static_cast<double>(count));
-    return first_[ring] + std::min(step, count - 1);
+    const double turns = phi / (2 * kPi), count = static_cast<double>(ring_bins(ring));
+    // A tiny negative angle leaves a fraction that rounds to 1: that is the end of the last bin.
+    return {ring, std::min((turns - std::floor(turns)) * count, std::nextafter(count, 0.0))};
+}
+
+size_t DirectionMesh::bin(const glm::dvec3& w) const { return bin(polar_angle(w), azimuth(w)); }
+
+size_t DirectionMesh::bin(double theta, double phi) const {
+    const Place at = place(theta, phi);
+    return first_[at.ring] + static_cast<size_t>(at.step);
+}
+
+size_t DirectionMesh::quarter(const glm::dvec3& w) const {
+    const Place at = place(polar_angle(w), azimuth(w));
+    const double middle = 0.5 * (std::cos(theta_low(at.ring)) + std::cos(theta_low(at.ring + 1)));
+    const auto half_step = static_cast<size_t>(2 * at.step);
+    return 4 * (first_[at.ring] + half_step / 2) + 2 * (std::abs(w.z) < middle) + half_step % 2;
 }
 
 int DirectionMesh::ring_of(size_t bin) const {

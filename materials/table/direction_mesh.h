@@ -26,6 +26,10 @@ class DirectionMesh {
     size_t bin(const glm::dvec3& w) const;
     /// θ beyond [0, π/2] counts as the nearest end; φ may be any angle.
     size_t bin(double theta, double phi) const;
+    /// 4·bin + q, q the quarter of the bin that `w` lies in: each bin is cut in two at the middle
+    /// of its cosθ and of its φ, so that its quarters have equal solid angles. It is the mesh twice
+    /// as fine that keeps the edges of this one.
+    size_t quarter(const glm::dvec3& w) const;
 
     size_t ring_first(int ring) const { return first_[ring]; }
     size_t ring_bins(int ring) const { return first_[ring + 1] - first_[ring]; }
@@ -40,6 +44,12 @@ class DirectionMesh {
     bool operator==(const DirectionMesh&) const = default;
 
   private:
+    struct Place {
+        int ring;
+        double step; ///< [0, bins of the ring): the bin and how far along φ in it
+    };
+    Place place(double theta, double phi) const;
+
     double ring_width_;
     std::vector<size_t> first_; ///< rings + 1
     std::vector<double> solid_angle_;

@@ -9,6 +9,27 @@
 
 namespace rapport {
 
+std::string error_text(const MeasurementError& error) {
+    return fmt::format("errors: noise {:.4f}, bins {:.4f}, realisation {}, discarded energy {:.1e}",
+                       error.noise, error.bins,
+                       error.realisation ? fmt::format("{:.4f}", *error.realisation)
+                                         : "unknown (of a single one)",
+                       error.discarded);
+}
+
+namespace {
+
+nlohmann::ordered_json error_json(const MeasurementError& error) {
+    nlohmann::ordered_json json{{"noise", error.noise}, {"bins", error.bins}};
+    json["realisation"] = nullptr;
+    if (error.realisation)
+        json["realisation"] = *error.realisation;
+    json["discarded"] = error.discarded;
+    return json;
+}
+
+} // namespace
+
 Info table_info(const std::filesystem::path& path) {
     const BsdfTable table = read_table(path);
     const size_t bands = table.bands.count();
@@ -20,6 +41,7 @@ Info table_info(const std::filesystem::path& path) {
     Info info;
     info.json["kind"] = "bsdf";
     info.json["accuracy"] = table.largest_accuracy();
+    info.json["errors"] = error_json(table.largest_error());
     info.json["paths"] = std::accumulate(table.paths.begin(), table.paths.end(), uint64_t{0});
     info.json["bins"] = 2 * table.exits.bins(); // both hemispheres, as the accuracy counts them
     info.json["bands"] = table.bands.names;
@@ -30,6 +52,7 @@ Info table_info(const std::filesystem::path& path) {
                             table.partial() ? " (partial)" : "", table.directions(),
                             2 * table.exits.bins(), bands, fmt::join(table.bands.names, ", "),
                             table.largest_accuracy(), info.json["paths"].get<uint64_t>());
+    info.text += error_text(table.largest_error()) + '\n';
 
     auto& incident = info.json["incident"] = nlohmann::ordered_json::array();
     for (size_t d = 0; d < table.directions(); ++d) {
@@ -44,7 +67,9 @@ Info table_info(const std::filesystem::path& path) {
                             {"unscattered", row(table.unscattered, d)},
                             {"absorbed", row(table.absorbed, d)},
                             {"capped", row(table.capped, d)},
+                            {"lost", row(table.lost, d)},
                             {"accuracy", table.accuracy[d]},
+                            {"errors", error_json(table.error(d))},
                             {"paths", table.paths[d]}});
         fmt::format_to(std::back_inserter(info.text),
                        "{:5} θ {:4.1f}° φ {:5.1f}°: R {:.4f}, T {:.4f}, unscattered {:.4f}, "

@@ -1,5 +1,6 @@
 #include "materials/table/bsdf_table.h"
 #include "renderer/app/commands.h"
+#include "renderer/app/info.h"
 #include "renderer/app/scan_files.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
@@ -19,6 +20,8 @@ struct VgspOptions {
     std::string cloth, draft, output, side = "both";
     std::vector<std::string> incidence;
     std::vector<double> planes, theta_in;
+    int realisations = 4;
+    bool resume = false;
     GoniophotometerSettings settings;
 };
 
@@ -47,6 +50,7 @@ MeasureOptions measure_options(const VgspOptions& options, const CommonOptions& 
     MeasureOptions measure;
     measure.goniophotometer = options.settings;
     measure.goniophotometer.seed = common.seed;
+    measure.realisations = options.realisations;
     measure.front = options.side != "back";
     measure.back = options.side != "front";
     for (const Side side : {Side::front, Side::back})
@@ -95,7 +99,7 @@ void scan(const Cloth& cloth, const std::filesystem::path& output, const VgspOpt
 
 void run(const VgspOptions& options, const CommonOptions& common) {
     const std::filesystem::path path = options.cloth;
-    const MeasureOptions measure = measure_options(options, common);
+    MeasureOptions measure = measure_options(options, common);
     const bool bare_draft = lower_extension(path) == ".wif";
     if (bare_draft && !options.draft.empty())
         throw FileError("command line", "--draft", "a cloth .toml to weave it with", path.string());
@@ -127,15 +131,21 @@ void run(const VgspOptions& options, const CommonOptions& common) {
     };
     if (scanning)
         return scan(cloth, output, options, measure.goniophotometer, watch, common.quiet);
+    measure.checkpoint = {output, options.resume};
+    measure.checkpoint.path += ".part";
+    if (options.resume && !common.quiet && !std::filesystem::exists(measure.checkpoint.path))
+        fmt::print(stderr, "{}: not there, so the measurement starts from the beginning\n",
+                   measure.checkpoint.path.string());
     const ClothMeasurement result = measure_cloth(cloth, measure, watch);
     line.reset();
     write_table(result.table, output);
+    std::filesystem::remove(measure.checkpoint.path);
     if (common.quiet)
         return;
     const BsdfTable& table = result.table;
-    fmt::print("{}: accuracy {:.4f} on {} bins, {} incident directions, {} paths\n",
+    fmt::print("{}: accuracy {:.4f} on {} bins, {} incident directions, {} paths\n{}\n",
                output.string(), table.largest_accuracy(), 2 * table.exits.bins(),
-               table.directions(), result.counts.paths);
+               table.directions(), result.counts.paths, error_text(table.largest_error()));
 }
 
 } // namespace
@@ -176,10 +186,19 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
     plane->needs(theta_in);
     command->add_option("--side", options->side, "Side the light arrives on (default both)")
         ->check(CLI::IsMember({"front", "back", "both"}));
+    command
+        ->add_option("--realisations", options->realisations,
+                     "Realisations of the cloth's random fibres that are averaged (default 4)")
+        ->check(CLI::Range(1, 1024))
+        ->excludes(plane);
     command->add_option("--max-rays", options->settings.max_paths,
                         "Incident paths per direction at most");
     command->add_option("--max-time", options->settings.max_seconds, "Seconds at most")
         ->check(CLI::PositiveNumber);
+    command
+        ->add_flag("--resume", options->resume,
+                   "Go on with a measurement that was interrupted, from OUTPUT.part")
+        ->excludes(plane);
     command->callback([options, &common] { run(*options, common); });
 }
 

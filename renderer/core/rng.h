@@ -14,6 +14,7 @@ enum class Purpose : uint32_t {
     colour_solve,
     scramble,
     test,
+    realisation,
 };
 
 /// Counter-based random numbers (Philox4x32-10; Salmon et al. 2011, "Parallel Random Numbers: As

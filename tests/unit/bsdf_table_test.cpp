@@ -78,7 +78,10 @@ void expect_equal(const BsdfTable& a, const BsdfTable& b) {
     EXPECT_EQ(a.unscattered, b.unscattered);
     EXPECT_EQ(a.absorbed, b.absorbed);
     EXPECT_EQ(a.capped, b.capped);
+    EXPECT_EQ(a.lost, b.lost);
     EXPECT_EQ(a.accuracy, b.accuracy);
+    EXPECT_EQ(a.bin_error, b.bin_error);
+    EXPECT_EQ(a.realisation_error, b.realisation_error);
     EXPECT_EQ(a.paths, b.paths);
     EXPECT_EQ(a.metadata, b.metadata);
 }

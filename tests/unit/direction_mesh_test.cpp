@@ -99,5 +99,26 @@ TEST(DirectionMesh, RefusesNoRings) {
     EXPECT_THROW(DirectionMesh(DirectionMesh::kMaxRings + 1), std::invalid_argument);
 }
 
+TEST(DirectionMesh, QuartersAreOfEqualSolidAngleAndInTheirBin) {
+    const DirectionMesh mesh;
+    for (const size_t bin : {size_t{0}, size_t{3}, size_t{50}, mesh.bins() - 1}) {
+        const auto b = mesh.bounds(bin);
+        std::vector<int> counts(4);
+        constexpr int kSteps = 20; // of cosθ and φ: all cells have one solid angle
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j) {
+                const double cosine =
+                    std::lerp(std::cos(b.theta_low), std::cos(b.theta_high), (i + 0.5) / kSteps);
+                const double phi = std::lerp(b.phi_low, b.phi_high, (j + 0.5) / kSteps);
+                const size_t quarter = mesh.quarter(spherical_direction(std::acos(cosine), phi));
+                ASSERT_EQ(quarter / 4, bin);
+                ASSERT_EQ(quarter % 4, 2 * (i >= kSteps / 2) + (j >= kSteps / 2));
+                ++counts[quarter % 4];
+            }
+        EXPECT_EQ(counts, std::vector<int>(4, kSteps * kSteps / 4));
+    }
+    EXPECT_LT(mesh.quarter({1, -1e-300, 0}), 4 * mesh.bins());
+}
+
 } // namespace
 } // namespace rapport

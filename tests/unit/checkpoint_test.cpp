@@ -1,0 +1,161 @@
+#include "renderer/core/error.h"
+#include "renderer/core/parallel.h"
+#include "renderer/core/rng.h"
+#include "tests/support/fibre_assemblies.h"
+#include "tests/support/file_bytes.h"
+#include "tests/support/temporary_folder.h"
+#include "vgsp/goniophotometer.h"
+
+#include <csignal>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace rapport {
+namespace {
+
+struct Interruption {};
+
+class Checkpointed : public testing::Test {
+  protected:
+    Checkpointed() {
+        tracers_.emplace_back(tests::fibre_stack(2, 12, 4.6, 2));
+        tracers_.emplace_back(tests::fibre_stack(2, 12, 4.2, 2));
+    }
+
+    static BsdfTable empty_table() {
+        BsdfTable table =
+            make_partial_table(Bands{}, {{Side::front, 0.6, 0.4}, {Side::back, 0, 0}});
+        table.metadata["cloth"] = "a stack";
+        return table;
+    }
+
+    /// Measures until the callback has been told of `increments`, or to the end.
+    BsdfTable run(int increments, bool resume, const BsdfTable& layout = empty_table()) {
+        BsdfTable table = layout;
+        increments_ = 0;
+        measure(tracers_, std::vector<FibreOptics>{{1.5, {0, 0.01, 0.1}, 0.01}},
+                {.accuracy = 1e-6, .max_paths = 150'001, .seed = 3}, table,
+                [&](const GoniophotometerProgress& state) {
+                    if (++increments_ == increments)
+                        throw Interruption();
+                    EXPECT_GE(state.seconds_left, 0);
+                    EXPECT_GT(state.paths_per_second, 0);
+                },
+                {folder_ / "table.part", resume});
+        return table;
+    }
+
+    const tests::TemporaryFolder folder_;
+    std::vector<kernel::FibreTracer> tracers_;
+    int increments_ = 0;
+};
+
+void expect_same_numbers(const BsdfTable& a, const BsdfTable& b) {
+    EXPECT_EQ(a.intensity, b.intensity);
+    EXPECT_EQ(a.unscattered, b.unscattered);
+    EXPECT_EQ(a.absorbed, b.absorbed);
+    EXPECT_EQ(a.capped, b.capped);
+    EXPECT_EQ(a.lost, b.lost);
+    EXPECT_EQ(a.paths, b.paths);
+    EXPECT_EQ(a.accuracy, b.accuracy);
+    EXPECT_EQ(a.bin_error, b.bin_error);
+    EXPECT_EQ(a.realisation_error, b.realisation_error);
+}
+
+TEST_F(Checkpointed, RunsThatAreInterruptedEndWithTheSameNumbers) {
+    const BsdfTable uninterrupted = run(0, false);
+    std::filesystem::remove(folder_ / "table.part");
+    const int all = increments_;
+    ASSERT_GE(all, 3);
+    // Resumed time and again, with other threads, each run doing one increment only.
+    int runs = 0;
+    for (bool done = false; !done; ++runs) {
+        set_thread_count(1 + runs % 3);
+        try {
+            expect_same_numbers(run(2, true), uninterrupted);
+            done = true;
+        } catch (const Interruption&) {
+            ASSERT_LT(runs, 100);
+        }
+    }
+    set_thread_count(0);
+    EXPECT_GE(runs, 2);
+    // One that starts anew does not look at what is there.
+    EXPECT_THROW(run(1, false), Interruption);
+    expect_same_numbers(run(0, false), uninterrupted);
+}
+
+TEST_F(Checkpointed, WhatBelongsToAnotherRunIsRefused) {
+    EXPECT_THROW(run(1, false), Interruption);
+    const auto refusal = [&](const BsdfTable& layout) -> std::string {
+        try {
+            run(1, true, layout);
+        } catch (const FileError& error) {
+            return error.place;
+        } catch (const Interruption&) {
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(refusal(empty_table()), "accepted");
+    BsdfTable other = empty_table();
+    other.metadata["cloth"] = "another";
+    EXPECT_EQ(refusal(other), "cloth");
+    other = empty_table();
+    other.metadata["more"] = "said";
+    EXPECT_EQ(refusal(other), "more");
+    other = empty_table();
+    other.incident[1].theta = 0.1;
+    EXPECT_EQ(refusal(other), "incident directions");
+    tracers_.pop_back();
+    EXPECT_EQ(refusal(empty_table()), "sums"); // of another number of realisations
+    tests::write_bytes(folder_ / "table.part", "no checkpoint");
+    EXPECT_NE(refusal(empty_table()), "accepted");
+}
+
+TEST(Command, AKilledMeasurementIsResumedToTheSameBytes) {
+    if (access(RAPPORT_PROGRAM, X_OK) != 0)
+        GTEST_SKIP() << "the program is not built";
+    const tests::TemporaryFolder folder;
+    const std::string cloth = RAPPORT_SOURCE_DIR "/scenes/cloths/viscose-plain.toml";
+    // Runs the program, killed after so many microseconds; the signal that ended it, or 0.
+    const auto vgsp = [&](const std::string& output, bool resume, useconds_t killed_after) {
+        std::vector<std::string> words{
+            RAPPORT_PROGRAM, "vgsp",           cloth,        "--incidence", "30,20",
+            "--side",        "front",          "--accuracy", "1e-3",        "--max-rays",
+            "50000",         "--realisations", "2",          "--quiet",     "-o",
+            output};
+        if (resume)
+            words.push_back("--resume");
+        std::vector<char*> arguments;
+        for (std::string& word : words)
+            arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        pid_t child = 0;
+        EXPECT_EQ(posix_spawn(&child, RAPPORT_PROGRAM, nullptr, nullptr, arguments.data(), environ),
+                  0);
+        if (killed_after > 0) {
+            usleep(killed_after);
+            kill(child, SIGKILL);
+        }
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
+        return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    };
+    const std::string whole = (folder / "whole.bsdf").string();
+    const std::string killed = (folder / "killed.bsdf").string();
+    ASSERT_EQ(vgsp(whole, false, 0), 0);
+    int kills = 0;
+    CounterRng rng(static_cast<uint64_t>(getpid()), Purpose::test, 0, 0);
+    for (int i = 0; i < 3; ++i)
+        kills += vgsp(killed, true, 50'000 + static_cast<useconds_t>(1e6 * rng.uniform())) != 0;
+    ASSERT_EQ(vgsp(killed, true, 0), 0);
+    EXPECT_EQ(tests::read_bytes(killed), tests::read_bytes(whole));
+    EXPECT_FALSE(std::filesystem::exists(killed + ".part"));
+    EXPECT_GT(kills, 0);
+}
+
+} // namespace
+} // namespace rapport

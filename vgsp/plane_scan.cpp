@@ -1,0 +1,220 @@
+#include "vgsp/plane_scan.h"
+
+#include "renderer/core/parallel.h"
+#include "vgsp/incident_path.h"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+
+namespace rapport {
+namespace {
+
+constexpr int kBins = 2 * PlaneScan::kAngles;
+constexpr uint64_t kBatchPaths = 2048;
+constexpr uint64_t kChunkPaths = 64 * kBatchPaths; ///< between two looks at the clock
+constexpr uint64_t kPilotPaths = 1 << 16;          ///< and as many again …
+constexpr uint64_t kMostPilotPaths = 1 << 18;      ///< … up to this, …
+constexpr double kPilotHits = 2000;                ///< … until the detector has seen so many
+constexpr double kPlannedSigmas = 3;
+constexpr uint64_t kMostPaths = uint64_t{1} << 40;
+constexpr uint64_t kFirstPilotPath = kMostPaths; ///< the pilot's numbers come after all others
+
+/// Sums over the paths that the detector sees.
+struct Tally {
+    explicit Tally(size_t bands)
+        : sum(kBins * bands), sum2(kBins * bands), mean(kBins), mean2(kBins) {}
+
+    void deposit(size_t bin, std::span<const double> weights) {
+        double total = 0;
+        for (size_t band = 0; band < weights.size(); ++band) {
+            sum[bin * weights.size() + band] += weights[band];
+            sum2[bin * weights.size() + band] += square(weights[band]);
+            total += weights[band];
+        }
+        const double average = total / static_cast<double>(weights.size());
+        mean[bin] += average;
+        mean2[bin] += square(average);
+    }
+    Tally& operator+=(const Tally& other) {
+        const auto add = [](std::vector<double>& to, const std::vector<double>& from) {
+            std::ranges::transform(to, from, to.begin(), std::plus());
+        };
+        add(sum, other.sum);
+        add(sum2, other.sum2);
+        add(mean, other.mean);
+        add(mean2, other.mean2);
+        paths += other.paths;
+        return *this;
+    }
+    /// ε²·N: what ε² would be after one path.
+    double error_of_one_path() const {
+        const double n = static_cast<double>(paths);
+        double total = 0, variance = 0;
+        for (int bin = 0; bin < kBins; ++bin) {
+            total += mean[bin] / n;
+            variance += (mean2[bin] / n - square(mean[bin] / n)) * n / (n - 1);
+        }
+        return total > 0 ? kBins * std::max(variance, 0.0) / square(total) : 0.0;
+    }
+    /// How many paths of equal weight would tell as much as those seen (Kish's effective size).
+    double hits() const {
+        const double total = std::accumulate(mean.begin(), mean.end(), 0.0);
+        return total > 0 ? square(total) / std::accumulate(mean2.begin(), mean2.end(), 0.0) : 0;
+    }
+    double accuracy() const { return std::sqrt(error_of_one_path() / static_cast<double>(paths)); }
+
+    std::vector<double> sum, sum2;   ///< [bin, band], of weights and their squares
+    std::vector<double> mean, mean2; ///< [bin], of the weights' means over the bands
+    uint64_t paths = 0;
+};
+
+/// The bin that sees light travelling along `direction`, if any does.
+std::optional<size_t> seen_in(const glm::dvec3& direction, const IncidentDirection& incident) {
+    const double c = std::cos(incident.phi), s = std::sin(incident.phi);
+    static const double limit = std::sin(PlaneScan::kHalfWidth);
+    if (std::abs(direction.y * c - direction.x * s) > limit)
+        return std::nullopt;
+    const double angle = std::atan2(direction.x * c + direction.y * s, std::abs(direction.z));
+    const double bin = std::floor(angle / PlaneScan::kStep + 0.5 * PlaneScan::kAngles);
+    if (bin < 0 || bin >= PlaneScan::kAngles)
+        return std::nullopt;
+    const bool reflected = (direction.z > 0) == (incident.side == Side::front);
+    return (reflected ? 0 : PlaneScan::kAngles) + static_cast<size_t>(bin);
+}
+
+/// Traces one direction's paths.
+class Detector {
+  public:
+    Detector(const IncidentPathTracer& paths, const IncidentDirection& incident, size_t number,
+             uint64_t seed)
+        : paths_(paths), incident_(incident), number_(number), seed_(seed) {}
+
+    void trace(uint64_t first, uint64_t count, Tally& tally) const {
+        std::vector<Tally> batches((count + kBatchPaths - 1) / kBatchPaths, Tally(paths_.bands));
+        parallel_for(batches.size(), [&](size_t i) {
+            const uint64_t from = i * kBatchPaths, to = std::min(count, from + kBatchPaths);
+            trace_batch(first + from, first + to, batches[i]);
+        });
+        for (const Tally& batch : batches)
+            tally += batch;
+    }
+
+    /// How many paths reach the accuracy asked for.
+    uint64_t plan(const GoniophotometerSettings& settings) const {
+        const uint64_t most = settings.max_paths > 0 ? settings.max_paths : kMostPaths;
+        if (most <= kPilotPaths)
+            return most;
+        Tally pilot(paths_.bands);
+        while (pilot.paths < kMostPilotPaths && pilot.hits() < kPilotHits)
+            trace(kFirstPilotPath + pilot.paths, kPilotPaths, pilot);
+        if (pilot.hits() == 0)
+            return std::min(most, kMostPilotPaths);
+        const double needed = pilot.error_of_one_path() *
+                              (1 + kPlannedSigmas / std::sqrt(pilot.hits())) /
+                              square(settings.accuracy);
+        return std::min(most, static_cast<uint64_t>(std::clamp(std::ceil(needed),
+                                                               static_cast<double>(kBatchPaths),
+                                                               static_cast<double>(kMostPaths))));
+    }
+
+  private:
+    void trace_batch(uint64_t first, uint64_t end, Tally& tally) const {
+        IncidentPath path;
+        std::vector<double> weights(paths_.bands);
+        for (uint64_t k = first; k < end; ++k) {
+            CounterRng rng(seed_, Purpose::incident_path, number_, k);
+            paths_.trace(incident_, rng, path);
+            if (path.fate != PathFate::scattered)
+                continue;
+            if (const std::optional<size_t> bin = seen_in(path.light.direction, incident_)) {
+                for (size_t band = 0; band < weights.size(); ++band)
+                    weights[band] = path.weight(band);
+                tally.deposit(*bin, weights);
+            }
+        }
+        tally.paths = end - first;
+    }
+
+    const IncidentPathTracer& paths_;
+    const IncidentDirection& incident_;
+    size_t number_;
+    uint64_t seed_;
+};
+
+PlaneScan result_of(const Tally& tally, const IncidentDirection& incident, const Bands& bands) {
+    const double n = static_cast<double>(tally.paths), solid_angle = PlaneScan::solid_angle();
+    const auto intensity = [&](const std::vector<double>& sum) {
+        std::vector<double> result(sum.size());
+        std::ranges::transform(sum, result.begin(),
+                               [&](double value) { return value / n / solid_angle; });
+        return result;
+    };
+    const auto error = [&](const std::vector<double>& sum, const std::vector<double>& sum2) {
+        std::vector<double> result(sum.size());
+        std::ranges::transform(sum, sum2, result.begin(), [&](double total, double squares) {
+            return std::sqrt(std::max(0.0, squares / n - square(total / n)) / n) / solid_angle;
+        });
+        return result;
+    };
+    return {incident,
+            bands,
+            intensity(tally.sum),
+            error(tally.sum, tally.sum2),
+            intensity(tally.mean),
+            error(tally.mean, tally.mean2),
+            tally.accuracy(),
+            tally.paths};
+}
+
+} // namespace
+
+double PlaneScan::solid_angle() { return kStep * 2 * std::sin(kHalfWidth); }
+
+std::vector<PlaneScan>
+scan_planes(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
+            const Bands& bands, std::span<const IncidentDirection> incident,
+            const GoniophotometerSettings& settings,
+            const std::function<void(const GoniophotometerProgress&)>& progress) {
+    if (!(settings.accuracy > 0))
+        throw std::invalid_argument("the accuracy asked for is not positive");
+    if (settings.max_events < 1)
+        throw std::invalid_argument("a path is allowed no events");
+    const std::vector<FibreMedium> media = fibre_media(optics, bands.count(), tracer);
+    const IncidentPathTracer paths{tracer, media, bands.count(), settings.max_events, true};
+
+    const auto start = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    const double directions = static_cast<double>(incident.size());
+    std::vector<PlaneScan> scans;
+    double worst = 0, traced = 0;
+    for (size_t d = 0; d < incident.size(); ++d) {
+        const Detector detector(paths, incident[d], d, settings.seed);
+        const uint64_t planned = detector.plan(settings);
+        const double until = settings.max_seconds * (static_cast<double>(d) + 1) / directions;
+        Tally tally(bands.count());
+        while (tally.paths < planned &&
+               (tally.paths == 0 || settings.max_seconds <= 0 || seconds() < until)) {
+            const uint64_t count = std::min(kChunkPaths, planned - tally.paths);
+            detector.trace(tally.paths, count, tally);
+            traced += static_cast<double>(count);
+            if (!progress)
+                continue;
+            const double share = static_cast<double>(tally.paths) / static_cast<double>(planned);
+            const double fraction = (static_cast<double>(d) + share) / directions, now = seconds();
+            double left = now * (1 - fraction) / fraction;
+            if (settings.max_seconds > 0)
+                left = std::clamp(settings.max_seconds - now, 0.0, left);
+            progress({std::max(worst, tally.accuracy()), fraction, now, left, traced / now});
+        }
+        scans.push_back(result_of(tally, incident[d], bands));
+        worst = std::max(worst, scans.back().accuracy);
+    }
+    return scans;
+}
+
+} // namespace rapport
