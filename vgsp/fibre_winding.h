@@ -28,7 +28,8 @@ struct PlacedYarn {
 
   private:
     /// How far a stray fibre at `p` of the section loops outwards: in full at the outline where it
-    /// faces away from the crossed yarn, not at all where it faces it or lies inside the yarn, or in a yarn without crimp.
+    /// faces away from the crossed yarn, not at all where it faces it or lies inside the yarn, or
+    /// in a yarn without crimp.
     glm::dvec2 stray(const StrayLoop& loop, const glm::dvec2& p, double s, double height) const;
 };
 
