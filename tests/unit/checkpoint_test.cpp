@@ -115,8 +115,7 @@ TEST_F(Checkpointed, WhatBelongsToAnotherRunIsRefused) {
 }
 
 TEST(Command, AKilledMeasurementIsResumedToTheSameBytes) {
-    if (access(RAPPORT_PROGRAM, X_OK) != 0)
-        GTEST_SKIP() << "the program is not built";
+    ASSERT_EQ(access(RAPPORT_PROGRAM, X_OK), 0) << "the program is not built";
     const tests::TemporaryFolder folder;
     const std::string cloth = RAPPORT_SOURCE_DIR "/scenes/cloths/viscose-plain.toml";
     // Runs the program, killed after so many microseconds; the signal that ended it, or 0.

@@ -55,7 +55,6 @@ std::string with(std::string_view old_words, std::string_view new_words) {
 std::filesystem::path write(const tests::TemporaryFolder& folder, const std::string& name,
                             std::string_view text) {
     const std::filesystem::path file = folder / name;
-    std::filesystem::remove(file); // overwriting waits for the disc on some file systems
     tests::write_bytes(file, std::string(text));
     return file;
 }

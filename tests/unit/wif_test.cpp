@@ -39,7 +39,6 @@ std::string wif_text(const std::map<std::string, std::string>& sections) {
 std::filesystem::path write(const tests::TemporaryFolder& folder, const std::string& name,
                             std::string_view text) {
     const std::filesystem::path file = folder / name;
-    std::filesystem::remove(file); // overwriting waits for the disc on some file systems
     tests::write_bytes(file, std::string(text));
     return file;
 }
