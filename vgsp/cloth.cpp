@@ -2,13 +2,13 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/input_file.h"
-#include "renderer/core/math.h"
-#include "vgsp/toml_reader.h"
 #include "vgsp/weave.h"
+#include "vgsp/yarn_text.h"
 
-#include <array>
-#include <cmath>
+#include <charconv>
 #include <fmt/format.h>
+#include <map>
+#include <numeric>
 #include <sstream>
 
 namespace rapport {
@@ -19,21 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr Domain kShare{.low = 0, .high = 1};
 constexpr Domain kSett{.low = 0, .high = 1000, .low_open = true};
-constexpr Domain kYarnSize{.low = 0, .high = 10'000, .low_open = true};
-constexpr Domain kTwist{.low = -100'000, .high = 100'000};
-constexpr Domain kFlatten{.low = 0, .high = 1, .low_open = true};
-constexpr Domain kFibreDiameter{.low = 0, .high = 1000, .low_open = true};
-constexpr Domain kRefractiveIndex{.low = 1, .high = 4};
-constexpr Domain kAbsorption{.low = 0, .high = kInfinity};
-constexpr Domain kColor{.low = 0, .high = 1, .high_open = true};
 constexpr Domain kWavelength{.low = 0, .high = kInfinity, .low_open = true};
-constexpr Domain kFineness{.low = 0, .high = 10'000, .low_open = true};
-constexpr Domain kDensity{.low = 0, .high = 25, .low_open = true};
-constexpr Domain kVariation{.low = 0, .high = 0.3};
-constexpr Domain kWandering{.low = 0, .high = 100};
-constexpr Domain kDeviation{.low = 0, .high = 30};
-constexpr int kMaxFibres = 10'000;
-constexpr int kMaxPlies = 6;
 
 /// Artificial silk, after which the method was first tried. Fibres: 1.7 dtex at 1.52 g/cm³ is
 /// 20·√(1.7/(π·1.52)) = 11.9 µm; index (1.539 + 2·1.519)/3 from Morton & Hearle's table. A bright
@@ -63,116 +49,6 @@ height_um = 80
 diameter_um = 11.9
 refractive_index = 1.526
 )";
-
-/// Which of two keys the file has: exactly one.
-std::string_view either(const TomlReader& file, std::string_view first, std::string_view second) {
-    if (file.has(first) == file.has(second))
-        file.fail(
-            second,
-            fmt::format("one of '{}' and '{}'", file.full_name(first), file.full_name(second)),
-            file.has(first) ? "both" : "none");
-    return file.has(first) ? first : second;
-}
-
-FibreSpec read_fibre(const TomlReader& file, size_t bands) {
-    file.allow_only({"diameter_um", "dtex", "density_g_cm3", "diameter_variation",
-                     "refractive_index", "absorption_per_um", "color", "surface_absorption"});
-    FibreSpec fibre;
-    if (file.has("density_g_cm3"))
-        fibre.density_g_cm3 = file.number("density_g_cm3", kDensity);
-    if (either(file, "diameter_um", "dtex") == "diameter_um") {
-        fibre.diameter_um = file.number("diameter_um", kFibreDiameter);
-    } else {
-        fibre.diameter_um = fibre_diameter_um(file.number("dtex", kFineness),
-                                              file.number("density_g_cm3", kDensity));
-        if (!kFibreDiameter.contains(fibre.diameter_um))
-            file.fail("dtex", fmt::format("a fibre of a diameter in {} µm", kFibreDiameter.text()),
-                      fmt::format("{:g} µm", fibre.diameter_um));
-    }
-    fibre.diameter_variation = file.number("diameter_variation", kVariation, 0);
-    fibre.refractive_index = file.number("refractive_index", kRefractiveIndex);
-    if (file.has("absorption_per_um") && file.has("color"))
-        file.fail("color", "one of 'absorption_per_um' and 'color'", "both");
-    if (file.has("color"))
-        fibre.color = file.numbers("color", kColor, bands);
-    if (file.has("absorption_per_um"))
-        fibre.absorption_per_um =
-            file.is_array("absorption_per_um")
-                ? file.numbers("absorption_per_um", kAbsorption, bands)
-                : std::vector<double>(bands, file.number("absorption_per_um", kAbsorption));
-    fibre.surface_absorption = file.number("surface_absorption", kShare, 0);
-    return fibre;
-}
-
-/// The number of `fibre` that weighs as much as a yarn of `tex`.
-int fibres_of(const TomlReader& file, const FibreSpec& fibre) {
-    const double tex = file.number("tex", kFineness);
-    if (!fibre.density_g_cm3)
-        file.fail("tex", "'density_g_cm3' of the fibre beside 'tex'", "none");
-    const double fibres =
-        std::round(10 * tex / fibre_dtex(fibre.diameter_um, *fibre.density_g_cm3));
-    if (!(fibres >= 1 && fibres <= kMaxFibres))
-        file.fail("tex", fmt::format("the fineness of 1 … {} fibres", kMaxFibres),
-                  fmt::format("that of {:g}", fibres));
-    return int(fibres);
-}
-
-Irregularity read_irregularity(const TomlReader& file) {
-    Irregularity irregularity;
-    irregularity.migration_um = file.number("migration_um", kWandering, 0);
-    irregularity.deviation_degrees = file.number("deviation_degrees", kDeviation, 0);
-    irregularity.spacing_jitter_um = file.number("spacing_jitter_um", kWandering, 0);
-    irregularity.stray_fibres = file.number("stray_fibres", kShare, 0);
-    if ((irregularity.migration_um == 0) != (irregularity.deviation_degrees == 0))
-        file.fail(irregularity.migration_um == 0 ? "deviation_degrees" : "migration_um",
-                  "'migration_um' and 'deviation_degrees' together", "one of them");
-    return irregularity;
-}
-
-YarnSpec read_yarn(const TomlReader& file, std::string_view sett_key, size_t bands) {
-    constexpr std::array kParallelKeys{"width_um", "height_um"};
-    constexpr std::array kTwistedKeys{"diameter_um", "twist_per_m"};
-    constexpr std::array kPliedKeys{"diameter_um", "twist_per_m", "plies", "ply_twist_per_m"};
-    std::vector<std::string_view> keys{sett_key,
-                                       "section",
-                                       "fibres",
-                                       "tex",
-                                       "flatten",
-                                       "migration_um",
-                                       "deviation_degrees",
-                                       "spacing_jitter_um",
-                                       "stray_fibres",
-                                       "fibre"};
-    const auto allow = [&](const auto& more) {
-        keys.insert(keys.begin() + 2, more.begin(), more.end());
-        file.allow_only(keys);
-    };
-    YarnSpec yarn;
-    const std::string section = file.one_of("section", {"parallel", "twisted", "plied"});
-    if (section == "parallel") {
-        allow(kParallelKeys);
-        yarn.section = YarnSection::parallel;
-        yarn.width_um = file.number("width_um", kYarnSize);
-        yarn.height_um = file.number("height_um", kYarnSize);
-    } else {
-        const bool plied = section == "plied";
-        plied ? allow(kPliedKeys) : allow(kTwistedKeys);
-        yarn.section = plied ? YarnSection::plied : YarnSection::twisted;
-        yarn.width_um = yarn.height_um = file.number("diameter_um", kYarnSize);
-        yarn.twist_per_m = file.number("twist_per_m", kTwist);
-        if (plied) {
-            yarn.plies = file.whole_number("plies", 2, kMaxPlies);
-            yarn.ply_twist_per_m = file.number("ply_twist_per_m", kTwist);
-        }
-    }
-    yarn.fibre = read_fibre(file.table("fibre"), bands);
-    yarn.fibres = either(file, "fibres", "tex") == "tex"
-                      ? fibres_of(file, yarn.fibre)
-                      : file.whole_number("fibres", 1, kMaxFibres);
-    yarn.flatten = file.number("flatten", kFlatten, 1);
-    yarn.irregularity = read_irregularity(file);
-    return yarn;
-}
 
 Bands read_bands(const TomlReader& file) {
     file.allow_only({"edges_nm"});
@@ -218,11 +94,123 @@ PlacedDraft read_draft(const TomlReader& file, const std::filesystem::path& path
     }
 }
 
+/// What the file says of the yarns of the warp, or of the weft.
+struct SystemText {
+    std::optional<YarnSpec> yarn;       ///< one for all, or
+    std::vector<std::string> order;     ///< names in turn, or
+    std::map<int, std::string> colours; ///< the names by the draft's numbers of its colours
+    double sett = 0;
+};
+
+SystemText read_system(const TomlReader& file, const char* sett_key,
+                       const std::map<std::string, YarnSpec>& yarns, size_t bands) {
+    SystemText system;
+    const auto check_name = [&](const std::string& name, const TomlReader& at, const char* key) {
+        if (!yarns.contains(name))
+            at.fail(key, fmt::format("a yarn that the file describes: [yarn.{}]", name), "none");
+    };
+    if (file.has("order")) {
+        file.allow_only({sett_key, "order"});
+        system.order = file.texts("order");
+        if (system.order.empty())
+            file.fail("order", "names of yarns", "none");
+        for (const std::string& name : system.order)
+            check_name(name, file, "order");
+    } else if (file.has("colors")) {
+        file.allow_only({sett_key, "colors"});
+        const TomlReader colours = file.table("colors");
+        for (const std::string& key : colours.keys()) {
+            int number = 0;
+            const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
+            if (error != std::errc() || end != key.data() + key.size())
+                colours.fail(key, "the number of a colour of the draft", "'" + key + "'");
+            system.colours[number] = colours.text(key);
+            check_name(system.colours[number], colours, key.c_str());
+        }
+    } else {
+        system.yarn = read_yarn(file, {sett_key, "order", "colors"}, bands);
+    }
+    system.sett = file.number(sett_key, kSett);
+    return system;
+}
+
+/// The named yarns that threads of the cloth are, in the order of their first thread.
+class YarnNumbers {
+  public:
+    YarnNumbers(const std::map<std::string, YarnSpec>& described, std::vector<NamedYarn>& used)
+        : described_(described), used_(used) {}
+
+    int operator()(const std::string& name) {
+        for (size_t i = 0; i < used_.size(); ++i)
+            if (used_[i].name == name)
+                return int(i);
+        used_.push_back({name, described_.at(name)});
+        return int(used_.size()) - 1;
+    }
+
+  private:
+    const std::map<std::string, YarnSpec>& described_;
+    std::vector<NamedYarn>& used_;
+};
+
+/// The yarn of each thread; nothing if all are alike.
+std::vector<int> thread_yarns(const SystemText& system, const TomlReader& file, const Draft& draft,
+                              const std::vector<int>& colours, int threads, YarnNumbers& number) {
+    std::vector<int> yarns;
+    for (int i = 0; i < threads && !system.order.empty(); ++i)
+        yarns.push_back(number(system.order[size_t(i) % system.order.size()]));
+    if (system.colours.empty())
+        return yarns;
+    if (colours.empty())
+        file.fail("colors", "a draft that tells the colours of these threads (or 'order')",
+                  "one that does not");
+    for (const int colour : colours) {
+        const int name = draft.palette_numbers[colour];
+        const auto found = system.colours.find(name);
+        if (found == system.colours.end())
+            file.fail("colors", fmt::format("a yarn for colour {} of the draft", name), "none");
+        yarns.push_back(number(found->second));
+    }
+    return yarns;
+}
+
+/// Lays the yarns into the draft, which is repeated as often as an order asks.
+void lay_in_yarns(Cloth& cloth, const SystemText& warp, const SystemText& weft,
+                  const std::map<std::string, YarnSpec>& described, const TomlReader& file,
+                  const std::string& draft_path) {
+    if (!warp.order.empty() || !weft.order.empty()) {
+        Draft draft = weavable(cloth.draft, draft_path);
+        const auto repeated = [&](int threads, const SystemText& system, const char* name) {
+            const int64_t count =
+                std::lcm(int64_t(threads), std::max<int64_t>(1, int64_t(system.order.size())));
+            if (count > kMaxThreads)
+                file.fail(name,
+                          fmt::format("an order that repeats with the draft within {} threads",
+                                      kMaxThreads),
+                          fmt::format("{}", count));
+            return int(count);
+        };
+        const int ends = repeated(draft.ends, warp, "warp");
+        const int picks = repeated(draft.picks, weft, "weft");
+        if (int64_t(ends) * picks > kMaxCrossings)
+            file.fail("warp", fmt::format("orders that repeat within {} crossings", kMaxCrossings),
+                      fmt::format("{} ends by {} picks", ends, picks));
+        cloth.draft = tiled(draft, ends, picks);
+    }
+    Draft& draft = cloth.draft;
+    YarnNumbers number(described, cloth.yarns);
+    draft.warp_yarns =
+        thread_yarns(warp, file.table("warp"), draft, draft.warp_colours, draft.ends, number);
+    draft.weft_yarns =
+        thread_yarns(weft, file.table("weft"), draft, draft.weft_colours, draft.picks, number);
+}
+
 Cloth parse_cloth(std::string_view text, const std::filesystem::path& path,
                   const std::optional<std::filesystem::path>& draft_override) {
     const toml::table table = parse_toml(text, path.string());
     const TomlReader file(table, path.string());
-    file.allow_only({"name", "draft", "weave", "rows", "crimp_balance", "bands", "warp", "weft"});
+    file.allow_only(
+        {"name", "draft", "weave", "rows", "crimp_balance", "bands", "warp", "weft", "yarn"});
 
     Cloth cloth;
     cloth.path = path;
@@ -230,84 +218,48 @@ Cloth parse_cloth(std::string_view text, const std::filesystem::path& path,
     cloth.crimp_balance = file.number("crimp_balance", kShare, cloth.crimp_balance);
     if (file.has("bands"))
         cloth.bands = read_bands(file.table("bands"));
-    const TomlReader warp = file.table("warp"), weft = file.table("weft");
-    cloth.warp = read_yarn(warp, "ends_per_cm", cloth.bands.count());
-    cloth.weft = read_yarn(weft, "picks_per_cm", cloth.bands.count());
-    cloth.ends_per_cm = warp.number("ends_per_cm", kSett);
-    cloth.picks_per_cm = weft.number("picks_per_cm", kSett);
+    std::map<std::string, YarnSpec> yarns;
+    if (file.has("yarn")) {
+        const TomlReader described = file.table("yarn");
+        for (const std::string& name : described.keys())
+            yarns[name] = read_yarn(described.table(name), {}, cloth.bands.count());
+    }
+    const SystemText warp =
+        read_system(file.table("warp"), "ends_per_cm", yarns, cloth.bands.count());
+    const SystemText weft =
+        read_system(file.table("weft"), "picks_per_cm", yarns, cloth.bands.count());
+    cloth.warp = warp.yarn.value_or(YarnSpec{});
+    cloth.weft = weft.yarn.value_or(YarnSpec{});
+    cloth.ends_per_cm = warp.sett;
+    cloth.picks_per_cm = weft.sett;
 
     PlacedDraft placed = draft_override
                              ? PlacedDraft{read_wif(*draft_override), draft_override->string()}
                              : read_draft(file, path);
     cloth.draft = std::move(placed.draft);
     cloth.draft.warnings = weavable(cloth.draft, placed.path).warnings;
+    lay_in_yarns(cloth, warp, weft, yarns, file, placed.path);
     cloth.source = cloth_text(cloth);
     return cloth;
 }
 
-toml::array toml_array(const auto& values) {
-    toml::array array;
-    for (const auto& value : values)
-        array.push_back(value);
-    return array;
-}
-
-toml::table fibre_table(const FibreSpec& fibre) {
-    toml::table table{{"diameter_um", fibre.diameter_um},
-                      {"refractive_index", fibre.refractive_index},
-                      {"surface_absorption", fibre.surface_absorption}};
-    if (fibre.density_g_cm3)
-        table.insert("density_g_cm3", *fibre.density_g_cm3);
-    if (fibre.diameter_variation != 0)
-        table.insert("diameter_variation", fibre.diameter_variation);
-    if (fibre.absorption_per_um)
-        table.insert("absorption_per_um", toml_array(*fibre.absorption_per_um));
-    if (fibre.color)
-        table.insert("color", toml_array(*fibre.color));
-    return table;
-}
-
-toml::table yarn_table(const YarnSpec& yarn, const char* sett_key, double sett) {
-    constexpr std::array kSections{"parallel", "twisted", "plied"};
-    toml::table table{{sett_key, sett},
-                      {"section", kSections[size_t(yarn.section)]},
-                      {"fibres", yarn.fibres},
-                      {"flatten", yarn.flatten},
-                      {"fibre", fibre_table(yarn.fibre)}};
-    if (yarn.section == YarnSection::parallel) {
-        table.insert("width_um", yarn.width_um);
-        table.insert("height_um", yarn.height_um);
+/// A system's table: of its one yarn, or the order of the named ones.
+toml::table system_table(const Cloth& cloth, const YarnSpec& yarn, const std::vector<int>& order,
+                         const char* sett_key, double sett) {
+    toml::table table;
+    if (order.empty()) {
+        table = yarn_table(yarn);
     } else {
-        table.insert("diameter_um", yarn.width_um);
-        table.insert("twist_per_m", yarn.twist_per_m);
+        std::vector<std::string> names;
+        for (const int number : order)
+            names.push_back(cloth.yarns[number].name);
+        table.insert("order", toml_array(names));
     }
-    if (yarn.section == YarnSection::plied) {
-        table.insert("plies", yarn.plies);
-        table.insert("ply_twist_per_m", yarn.ply_twist_per_m);
-    }
-    const Irregularity& irregularity = yarn.irregularity;
-    for (const auto& [key, value] : {std::pair("migration_um", irregularity.migration_um),
-                                     {"deviation_degrees", irregularity.deviation_degrees},
-                                     {"spacing_jitter_um", irregularity.spacing_jitter_um},
-                                     {"stray_fibres", irregularity.stray_fibres}})
-        if (value != 0)
-            table.insert(key, value);
+    table.insert(sett_key, sett);
     return table;
 }
 
 } // namespace
-
-double fibre_diameter_um(double dtex, double density_g_cm3) {
-    return 20 * std::sqrt(dtex / (kPi * density_g_cm3));
-}
-
-double fibre_dtex(double diameter_um, double density_g_cm3) {
-    return kPi * density_g_cm3 * square(diameter_um / 20);
-}
-
-double Irregularity::correlation_length_um() const {
-    return migration_um == 0 ? kInfinity : migration_um / std::tan(radians(deviation_degrees));
-}
 
 Cloth read_cloth(const std::filesystem::path& path,
                  const std::optional<std::filesystem::path>& draft_override) {
@@ -325,14 +277,34 @@ Cloth viscose_cloth(const std::filesystem::path& draft_path) {
     return parse_cloth(kViscose, draft_path, draft_path);
 }
 
+std::vector<YarnKind> yarn_kinds(const Cloth& cloth) {
+    std::vector<YarnKind> kinds;
+    if (cloth.draft.warp_yarns.empty())
+        kinds.push_back({"warp", &cloth.warp});
+    if (cloth.draft.weft_yarns.empty())
+        kinds.push_back({"weft", &cloth.weft});
+    for (const NamedYarn& yarn : cloth.yarns)
+        kinds.push_back({"yarn." + yarn.name, &yarn.yarn});
+    return kinds;
+}
+
 std::string cloth_text(const Cloth& cloth) {
+    const Draft draft = weavable(cloth.draft, cloth.path.string());
     toml::table table{{"name", cloth.name},
-                      {"rows", toml_array(draft_rows(weavable(cloth.draft, cloth.path.string())))},
+                      {"rows", toml_array(draft_rows(draft))},
                       {"crimp_balance", cloth.crimp_balance},
-                      {"warp", yarn_table(cloth.warp, "ends_per_cm", cloth.ends_per_cm)},
-                      {"weft", yarn_table(cloth.weft, "picks_per_cm", cloth.picks_per_cm)}};
+                      {"warp", system_table(cloth, cloth.warp, draft.warp_yarns, "ends_per_cm",
+                                            cloth.ends_per_cm)},
+                      {"weft", system_table(cloth, cloth.weft, draft.weft_yarns, "picks_per_cm",
+                                            cloth.picks_per_cm)}};
     if (!cloth.bands.is_rgb())
         table.insert("bands", toml::table{{"edges_nm", toml_array(cloth.bands.edges_nm)}});
+    if (!cloth.yarns.empty()) {
+        toml::table yarns;
+        for (const NamedYarn& yarn : cloth.yarns)
+            yarns.insert(yarn.name, yarn_table(yarn.yarn));
+        table.insert("yarn", std::move(yarns));
+    }
     std::ostringstream text;
     text << toml::toml_formatter(table) << '\n';
     return text.str();

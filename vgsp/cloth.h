@@ -23,7 +23,13 @@
 //   warp.ends_per_cm     1/cm  (0, 1000]                         sett of the warp
 //   weft.picks_per_cm    1/cm  (0, 1000]                         sett of the weft
 //
-//   In [warp] and in [weft], of the yarn:
+//   In [warp] and in [weft], where not all threads are alike, instead of the yarn's keys:
+//   order                      names of yarns          -         of the threads in turn, the first
+//                                                                first, again and again
+//   colors                     table of yarns          -         number of a colour of the draft =
+//                                                                name of the yarn of its threads
+//
+//   In [warp] and in [weft], and in each [yarn.NAME] that they name, of the yarn:
 //   section                    "parallel", "twisted",            how its fibres lie
 //                              "plied"
 //   fibres                     whole, 1 … 10 000       -         number of fibres in the section
@@ -42,7 +48,7 @@
 //   spacing_jitter_um    µm    [0, 100]                0         see Irregularity
 //   stray_fibres               [0, 1]                  0         see Irregularity
 //
-//   In [warp.fibre] and in [weft.fibre]:
+//   In [warp.fibre], [weft.fibre] and each [yarn.NAME.fibre]:
 //   diameter_um          µm    (0, 1000]               -         of the round fibre
 //   dtex                 dg/km (0, 10 000]             -         its fineness instead, with density
 //                                                                (exactly one of these two)
@@ -122,15 +128,25 @@ struct YarnSpec {
     bool operator==(const YarnSpec&) const = default;
 };
 
+struct NamedYarn {
+    std::string name;
+    YarnSpec yarn;
+
+    bool operator==(const NamedYarn&) const = default;
+};
+
 /// A woven cloth, as its file says it: the trade's units are kept.
 struct Cloth {
     std::string name;
-    Draft draft;             ///< as it was given; weavable() trims and reduces it
+    /// As it was given, or repeated as often as an order of yarns asks; weavable() trims and
+    /// reduces it. Its warp_yarns and weft_yarns are indices into `yarns`.
+    Draft draft;
     double ends_per_cm = 0;  ///< warp sett
     double picks_per_cm = 0; ///< weft sett
     /// Warp's share of the crimp: h_warp / (h_warp + h_weft), [0, 1].
     double crimp_balance = 0.5;
-    YarnSpec warp, weft;
+    YarnSpec warp, weft; ///< of all threads, unless the draft has the yarns of each
+    std::vector<NamedYarn> yarns;
     Bands bands;
 
     /// Where it came from, for messages, and cloth_text() for the table's metadata.
@@ -146,6 +162,15 @@ Cloth read_cloth(const std::filesystem::path& path,
 
 /// The built-in viscose cloth woven to `draft_path` (a bare `.wif` in place of a cloth).
 Cloth viscose_cloth(const std::filesystem::path& draft_path);
+
+struct YarnKind {
+    std::string place; ///< in the file: "warp", "weft" or "yarn.NAME"
+    const YarnSpec* yarn;
+};
+
+/// The kinds of yarn in the cloth; a fibre's kind is an index into these. First the warp and the
+/// weft, each if all its threads are alike, then the named yarns.
+std::vector<YarnKind> yarn_kinds(const Cloth& cloth);
 
 /// The cloth as a cloth file that stands alone: keys in a fixed order, numbers to their last digit,
 /// the weave as the rows that are woven, so that whatever decides the interlacement, yarns or

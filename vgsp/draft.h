@@ -29,6 +29,10 @@ struct Draft {
     /// Index into `palette` of each end and pick; empty if the draft says nothing of colour.
     std::vector<int> warp_colours, weft_colours;
     std::vector<std::array<double, 3>> palette; ///< sRGB-encoded, 0 … 1
+    std::vector<int> palette_numbers;           ///< what the draft calls the palette's colours
+
+    /// Which of its cloth's named yarns each end and pick is; empty if all are alike.
+    std::vector<int> warp_yarns, weft_yarns;
 
     std::vector<std::string> warnings; ///< in a person's words, one line each
 

@@ -37,7 +37,7 @@ FibreOptics undyed(const FibreSpec& fibre, size_t bands) {
 }
 
 void dye(FibreOptics& optics, const FibreSpec& fibre, const ColourSolver& solver,
-         const Cloth& cloth, const char* place) {
+         const Cloth& cloth, const std::string& place) {
     for (size_t band = 0; band < fibre.color->size(); ++band) {
         const double wanted = (*fibre.color)[band];
         const std::optional<double> absorption = solver.absorption_for(wanted);
@@ -56,7 +56,7 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
                                             const std::vector<FibreOptics>& optics,
                                             const MeasureOptions& options) {
     const GoniophotometerSettings& settings = options.goniophotometer;
-    return {
+    std::map<std::string, std::string> metadata{
         {"program", fmt::format("rapport {}", RAPPORT_VERSION)},
         {"cloth_name", cloth.name},
         {"cloth", cloth.source},
@@ -82,27 +82,31 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
         {"overlap_fraction", fmt::format("{}", element.overlap_fraction)},
         {"warp_twist_rounding", fmt::format("{}", element.twist_rounding_warp)},
         {"weft_twist_rounding", fmt::format("{}", element.twist_rounding_weft)},
-        {"warp_absorption_per_um",
-         fmt::format("{}", fmt::join(optics[kWarpFibre].absorption_per_um, " "))},
-        {"weft_absorption_per_um",
-         fmt::format("{}", fmt::join(optics[kWeftFibre].absorption_per_um, " "))},
     };
+    const std::vector<YarnKind> kinds = yarn_kinds(cloth);
+    for (size_t k = 0; k < kinds.size(); ++k)
+        metadata[kinds[k].place + "_absorption_per_um"] =
+            fmt::format("{}", fmt::join(optics[k].absorption_per_um, " "));
+    return metadata;
 }
 
 } // namespace
 
 std::vector<FibreOptics> cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
                                       const GoniophotometerSettings& settings) {
-    const size_t bands = cloth.bands.count();
-    std::vector<FibreOptics> optics{undyed(cloth.warp.fibre, bands),
-                                    undyed(cloth.weft.fibre, bands)};
-    if (cloth.warp.fibre.color || cloth.weft.fibre.color) {
-        const ColourSolver solver(tracer, optics, settings.max_events, settings.seed);
-        if (cloth.warp.fibre.color)
-            dye(optics[kWarpFibre], cloth.warp.fibre, solver, cloth, "warp.fibre.color");
-        if (cloth.weft.fibre.color)
-            dye(optics[kWeftFibre], cloth.weft.fibre, solver, cloth, "weft.fibre.color");
+    const std::vector<YarnKind> kinds = yarn_kinds(cloth);
+    std::vector<FibreOptics> optics;
+    bool dyed = false;
+    for (const YarnKind& kind : kinds) {
+        optics.push_back(undyed(kind.yarn->fibre, cloth.bands.count()));
+        dyed |= kind.yarn->fibre.color.has_value();
     }
+    if (!dyed)
+        return optics;
+    const ColourSolver solver(tracer, optics, settings.max_events, settings.seed);
+    for (size_t k = 0; k < kinds.size(); ++k)
+        if (kinds[k].yarn->fibre.color)
+            dye(optics[k], kinds[k].yarn->fibre, solver, cloth, kinds[k].place + ".fibre.color");
     return optics;
 }
 

@@ -5,12 +5,14 @@
 
 namespace rapport {
 
+/// The kinds of fibre in a cloth whose ends are all alike, and its picks; in general a fibre's kind
+/// is an index into yarn_kinds().
 enum FibreKind : uint32_t { kWarpFibre = 0, kWeftFibre = 1 };
 
 /// The repeat of a cloth as explicit fibres, in µm: x = weft, y = warp, z = face; end 1 and pick 1
 /// lie at half a spacing from the origin; z = 0 is the cloth's middle.
 struct MicroElement {
-    kernel::FibreAssembly fibres; ///< chain kind = FibreKind
+    kernel::FibreAssembly fibres; ///< chain kind = index into yarn_kinds()
 
     int repeats_x = 1, repeats_y = 1; ///< draft repeats per cell, more than one where twist asks
     size_t segments = 0;

@@ -84,6 +84,13 @@ void TomlReader::allow_only(const std::vector<std::string_view>& keys) const {
                     fmt::format("'{}'", excerpt(key.str())));
 }
 
+std::vector<std::string> TomlReader::keys() const {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : table_)
+        keys.emplace_back(key.str());
+    return keys;
+}
+
 TomlReader TomlReader::table(std::string_view key) const {
     const toml::node& node = require(key, "a table");
     if (!node.is_table())

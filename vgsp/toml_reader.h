@@ -34,6 +34,7 @@ class TomlReader {
     bool has(std::string_view key) const { return table_.contains(key); }
     /// What the file calls the key, its tables' names included.
     std::string full_name(std::string_view key) const;
+    std::vector<std::string> keys() const;
     /// The table of that key, which must be there.
     TomlReader table(std::string_view key) const;
 

@@ -39,6 +39,9 @@ Draft cut(const Draft& draft, const std::vector<int>& ends, const std::vector<in
     result.warp_colours = chosen(draft.warp_colours, ends);
     result.weft_colours = chosen(draft.weft_colours, picks);
     result.palette = draft.palette;
+    result.palette_numbers = draft.palette_numbers;
+    result.warp_yarns = chosen(draft.warp_yarns, ends);
+    result.weft_yarns = chosen(draft.weft_yarns, picks);
     result.warnings = draft.warnings;
     return result;
 }
@@ -72,9 +75,13 @@ template <class T> bool repeats_after(const T* values, int count, int period) {
     return std::memcmp(values, values + period, sizeof(T) * (count - period)) == 0;
 }
 
+/// True as well for a property that the draft does not tell.
+bool repeats_after(const std::vector<int>& values, int period) {
+    return values.empty() || repeats_after(values.data(), int(values.size()), period);
+}
+
 bool ends_repeat_after(const Draft& draft, int period) {
-    if (!draft.warp_colours.empty() &&
-        !repeats_after(draft.warp_colours.data(), draft.ends, period))
+    if (!repeats_after(draft.warp_colours, period) || !repeats_after(draft.warp_yarns, period))
         return false;
     for (int pick = 0; pick < draft.picks; ++pick)
         if (!repeats_after(&draft.warp_up[size_t(pick) * draft.ends], draft.ends, period))
@@ -83,8 +90,7 @@ bool ends_repeat_after(const Draft& draft, int period) {
 }
 
 bool picks_repeat_after(const Draft& draft, int period) {
-    if (!draft.weft_colours.empty() &&
-        !repeats_after(draft.weft_colours.data(), draft.picks, period))
+    if (!repeats_after(draft.weft_colours, period) || !repeats_after(draft.weft_yarns, period))
         return false;
     const size_t row = draft.ends;
     return std::memcmp(draft.warp_up.data(), draft.warp_up.data() + row * period,
@@ -104,6 +110,16 @@ template <class IsPeriod> int smallest_period(int count, IsPeriod is_period) {
 }
 
 } // namespace
+
+Draft tiled(const Draft& draft, int ends, int picks) {
+    const auto again = [](int count, int period) {
+        std::vector<int> indices(count);
+        for (int i = 0; i < count; ++i)
+            indices[i] = i % period;
+        return indices;
+    };
+    return cut(draft, again(ends, draft.ends), again(picks, draft.picks));
+}
 
 Draft weavable(const Draft& draft, const std::string& path) {
     const std::vector<int> ends = others(draft.ends, draft.unthreaded_ends);

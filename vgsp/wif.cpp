@@ -226,6 +226,7 @@ void WifReader::read_palette() {
     for (const auto& [number, colour] : colours) {
         colours_[number] = int(draft_.palette.size());
         draft_.palette.push_back(colour);
+        draft_.palette_numbers.push_back(number);
     }
 }
 

@@ -42,26 +42,31 @@ double WrapCurve::curvature_radius(double angle) const {
     return square(a_ * b_) / (ellipse * ellipse * ellipse) + c_;
 }
 
-/// The angle at which the curve comes down to `height` ∈ [0, crest].
-double WrapCurve::crest_shoulder(double height) const {
-    return crossing(0, kPi / 2, [&](double angle) { return height - point(angle).y; });
+WrapPassage::WrapPassage(const WrapCurve& from, const WrapCurve& to, double rise)
+    : from_(from), to_(to), rise_(rise) {}
+
+glm::dvec2 WrapPassage::mean_point(double angle) const {
+    return 0.5 * (from_.point(angle) + to_.point(angle));
 }
 
-double WrapCurve::smallest_spacing(double crossed_crimp) const {
-    // The two curves are images of each other in the point M half-way between their centres, so
-    // a line touches both from different sides exactly if it touches one and passes through M.
-    // It exists as long as M lies outside the curve.
-    return 2 * point(crest_shoulder(crossed_crimp / 2)).x;
+/// The angle at which the mean curve comes down to M's height.
+double WrapPassage::shoulder() const {
+    return crossing(0, kPi / 2, [&](double angle) { return rise_ / 2 - mean_point(angle).y; });
 }
 
-double WrapCurve::tangent_angle(double spacing, double crossed_crimp) const {
+double WrapPassage::smallest_spacing() const {
+    // There is a tangent through M as long as M lies outside the curve.
+    return 2 * mean_point(shoulder()).x;
+}
+
+double WrapPassage::tangent_angle(double spacing) const {
     // M's height over the tangent at φ, negative at the crest and not negative at the angle where
     // the curve has come down to M's height, changes sign once between the two: the tangents that
     // leave M on their outer side form one interval, because the curve is convex.
-    const glm::dvec2 m(spacing / 2, crossed_crimp / 2);
-    return crossing(0, crest_shoulder(m.y), [&](double angle) {
+    const glm::dvec2 m(spacing / 2, rise_ / 2);
+    return crossing(0, shoulder(), [&](double angle) {
         const glm::dvec2 normal(std::sin(angle), std::cos(angle));
-        return dot(normal, m - point(angle));
+        return dot(normal, m - mean_point(angle));
     });
 }
 

@@ -25,19 +25,33 @@ class WrapCurve {
 
     glm::dvec2 point(double angle) const;
     double curvature_radius(double angle) const; ///< [µm]
-
-    /// The smallest distance of two crossed sections, one `crossed_crimp` higher than the other
-    /// [µm, 0 … 2·(height of the crest)], between which the axis can pass from above the one to
-    /// below the other. For a circle of radius D: √(4D² − crossed_crimp²).
-    double smallest_spacing(double crossed_crimp) const;
-
-    /// The angle at which the axis leaves the curve along the line that also touches the curve of
-    /// the next section, `spacing` ≥ smallest_spacing(crossed_crimp) away, from the other side.
-    double tangent_angle(double spacing, double crossed_crimp) const;
+    bool operator==(const WrapCurve&) const = default;
 
   private:
     double a_, b_, c_; ///< crossed half width and half height, own half height
-    double crest_shoulder(double height) const;
+};
+
+/// The way of a yarn from above one crossed section to below the next, wrapping the curves `from`
+/// and `to` of the two, the next being `rise` = half of both crossed crimps higher [µm, 0 … both
+/// crests]. With M half-way between their centres, the line that touches both is the tangent
+/// through M to the curve of their mean points, whose support function is the mean of theirs.
+class WrapPassage {
+  public:
+    WrapPassage(const WrapCurve& from, const WrapCurve& to, double rise);
+
+    /// The smallest distance of the two sections between which the axis can pass [µm]. For circles
+    /// of radius D: √(4D² − rise²).
+    double smallest_spacing() const;
+    /// The angle at which the axis leaves the one curve along the line that touches the other, from
+    /// the other side, `spacing` ≥ smallest_spacing() away.
+    double tangent_angle(double spacing) const;
+
+  private:
+    glm::dvec2 mean_point(double angle) const;
+    double shoulder() const;
+
+    WrapCurve from_, to_;
+    double rise_;
 };
 
 /// The part of a wrap curve from its crest to an angle, by arc length σ ∈ [0, length()].

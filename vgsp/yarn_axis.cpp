@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 namespace rapport {
@@ -10,61 +9,89 @@ namespace {
 
 constexpr double kRounding = 1e-9; ///< relative; what a spacing that just suffices may lack
 
-bool interlaces(std::span<const uint8_t> above) {
-    return std::adjacent_find(above.begin(), above.end(), std::not_equal_to<>()) != above.end();
-}
-
-double contact_angle(std::span<const uint8_t> above, double spacing, const WrapCurve& wrap,
-                     double crossed_crimp) {
-    if (!interlaces(above))
-        return 0;
-    if (!(spacing >= wrap.smallest_spacing(crossed_crimp) * (1 - kRounding)))
-        throw std::invalid_argument("the crossed yarns are too close for a yarn to pass between");
-    return wrap.tangent_angle(spacing, crossed_crimp);
+std::vector<YarnAxis::Crossing> crossings_of(std::span<const uint8_t> above, const WrapCurve& wrap,
+                                             double crossed_crimp) {
+    std::vector<YarnAxis::Crossing> crossings;
+    for (const uint8_t over : above)
+        crossings.push_back({over != 0, &wrap, crossed_crimp});
+    return crossings;
 }
 
 } // namespace
 
 YarnAxis::YarnAxis(std::span<const uint8_t> above, double spacing, const WrapCurve& wrap,
                    double own_crimp, double crossed_crimp)
-    : wrap_(wrap), arc_(wrap, contact_angle(above, spacing, wrap, crossed_crimp)),
-      period_(spacing * above.size()) {
-    const double angle = arc_.angle(arc_.length());
-    const glm::dvec2 last_contact = wrap_.point(angle);
-    smallest_curvature_radius_ =
-        angle > 0 ? std::min(wrap_.curvature_radius(0), wrap_.curvature_radius(angle))
-                  : std::numeric_limits<double>::infinity();
+    : YarnAxis(crossings_of(above, wrap, crossed_crimp), spacing, own_crimp) {}
 
+YarnAxis::YarnAxis(std::span<const Crossing> crossings, double spacing, double own_crimp)
+    : period_(spacing * crossings.size()) {
+    struct Solved {
+        const WrapCurve *from, *to;
+        double rise, angle;
+    };
+    std::vector<Solved> solved; // few: passages repeat
+    const auto contact_angle = [&](const Crossing& here, const Crossing& next) {
+        const double rise = 0.5 * (here.crimp + next.crimp);
+        for (const Solved& s : solved)
+            if (s.from == here.wrap && s.to == next.wrap && s.rise == rise)
+                return s.angle;
+        const WrapPassage passage(*here.wrap, *next.wrap, rise);
+        if (!(spacing >= passage.smallest_spacing() * (1 - kRounding)))
+            throw std::invalid_argument(
+                "the crossed yarns are too close for a yarn to pass between");
+        solved.push_back({here.wrap, next.wrap, rise, passage.tangent_angle(spacing)});
+        return solved.back().angle;
+    };
     double interval_start = 0;
-    for (size_t k = 0; k < above.size(); ++k) {
+    for (size_t k = 0; k < crossings.size(); ++k) {
         interval_start = length_;
-        const double side = above[k] ? 1 : -1;
+        const Crossing &here = crossings[k], &next = crossings[(k + 1) % crossings.size()];
+        const double side = here.above ? 1 : -1;
         const glm::dvec2 crest((k + 0.5) * spacing, side * own_crimp / 2);
-        if (above[k] == above[(k + 1) % above.size()]) {
+        if (here.above == next.above) {
             append(Kind::straight, spacing, crest, 0, 0);
             continue;
         }
-        const glm::dvec2 centre(crest.x, -side * crossed_crimp / 2);
-        const glm::dvec2 next_centre(crest.x + spacing, -centre.y);
-        const glm::dvec2 leaves = centre + last_contact * glm::dvec2(1, side);
-        const glm::dvec2 lands = next_centre - last_contact * glm::dvec2(1, side);
+        const double angle = contact_angle(here, next);
+        const size_t leaving = arc_to(*here.wrap, angle), landing = arc_to(*next.wrap, angle);
+        const glm::dvec2 centre(crest.x, -side * here.crimp / 2);
+        const glm::dvec2 next_centre(crest.x + spacing, side * next.crimp / 2);
+        const auto contact = [&](size_t arc) {
+            return arcs_[arc].curve.point(arcs_[arc].arc.angle(arcs_[arc].arc.length()));
+        };
+        const glm::dvec2 leaves = centre + contact(leaving) * glm::dvec2(1, side);
+        const glm::dvec2 lands = next_centre - contact(landing) * glm::dvec2(1, side);
         // Where the yarns are as close as they can be, the line has no length and no direction.
         const double line = dot(lands - leaves, {std::cos(angle), -side * std::sin(angle)});
-        append(Kind::leaving_crest, arc_.length(), centre, side, 0);
+        append(Kind::leaving_crest, arcs_[leaving].arc.length(), centre, side, 0, leaving);
         append(Kind::straight, std::max(0.0, line), leaves, 0, -side * angle);
-        append(Kind::approaching_crest, arc_.length(), next_centre, -side, 0);
+        append(Kind::approaching_crest, arcs_[landing].arc.length(), next_centre, -side, 0,
+               landing);
         turn_ += 2 * angle;
     }
-    // The repeat begins half an interval before the first crossing; intervals are symmetric.
     first_crossing_ = (length_ - interval_start) / 2;
 }
 
-void YarnAxis::append(Kind kind, double length, glm::dvec2 origin, double side, double slope) {
-    pieces_.push_back({kind, length_, length, origin, side, slope, slope_integral_});
+/// The index in arcs_ of the arc of `curve` from its crest to that angle.
+size_t YarnAxis::arc_to(const WrapCurve& curve, double end_angle) {
+    for (size_t i = 0; i < arcs_.size(); ++i)
+        if (arcs_[i].curve == curve && arcs_[i].end_angle == end_angle)
+            return i;
+    arcs_.push_back({curve, end_angle, WrapArc(curve, end_angle)});
+    if (end_angle > 0)
+        smallest_curvature_radius_ =
+            std::min({smallest_curvature_radius_, curve.curvature_radius(0),
+                      curve.curvature_radius(end_angle)});
+    return arcs_.size() - 1;
+}
+
+void YarnAxis::append(Kind kind, double length, glm::dvec2 origin, double side, double slope,
+                      size_t arc) {
+    pieces_.push_back({kind, length_, length, origin, side, slope, slope_integral_, arc});
     length_ += length;
     slope_integral_ += kind == Kind::straight        ? slope * length
-                       : kind == Kind::leaving_crest ? -side * arc_.angle_integral(length)
-                                                     : side * arc_.angle_integral(length);
+                       : kind == Kind::leaving_crest ? -side * arcs_[arc].arc.angle_integral(length)
+                                                     : side * arcs_[arc].arc.angle_integral(length);
 }
 
 const YarnAxis::Piece& YarnAxis::piece_at(double s) const {
@@ -85,8 +112,9 @@ YarnAxis::Point YarnAxis::at(double s) const {
         return {p.x + repeats * period_, p.y, piece.slope};
     }
     const double forward = piece.kind == Kind::leaving_crest ? 1 : -1;
-    const double angle = arc_.angle(forward > 0 ? t : piece.length - t);
-    const glm::dvec2 p = piece.origin + wrap_.point(angle) * glm::dvec2(forward, piece.side);
+    const auto& [curve, end_angle, arc] = arcs_[piece.arc];
+    const double angle = arc.angle(forward > 0 ? t : piece.length - t);
+    const glm::dvec2 p = piece.origin + curve.point(angle) * glm::dvec2(forward, piece.side);
     return {p.x + repeats * period_, p.y, -forward * piece.side * angle};
 }
 
@@ -102,11 +130,11 @@ double YarnAxis::slope_integral(double s) const {
         integral += piece.slope * t;
         break;
     case Kind::leaving_crest:
-        integral -= piece.side * arc_.angle_integral(t);
+        integral -= piece.side * arcs_[piece.arc].arc.angle_integral(t);
         break;
     case Kind::approaching_crest:
-        integral += piece.side *
-                    (arc_.angle_integral(piece.length) - arc_.angle_integral(piece.length - t));
+        integral += piece.side * (arcs_[piece.arc].arc.angle_integral(piece.length) -
+                                  arcs_[piece.arc].arc.angle_integral(piece.length - t));
         break;
     }
     return integral;

@@ -2,6 +2,7 @@
 #include "vgsp/cloth.h"
 #include "vgsp/micro_element.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <iterator>
@@ -57,12 +58,11 @@ std::string irregularity_text(const YarnSpec& yarn) {
     return text;
 }
 
-std::string yarn_text(const char* name, const YarnSpec& yarn, double per_cm, double cover,
-                      double crimp) {
+std::string yarn_text(const YarnSpec& yarn) {
     const bool plied = yarn.section == YarnSection::plied;
     std::string text =
-        fmt::format("{}: {} per cm, {}{} {} fibres of {:.4g} µm in {:.4g} × {:.4g} µm", name,
-                    per_cm, plied ? fmt::format("{} plies of ", yarn.plies) : "", yarn.fibres,
+        fmt::format("{}{} {} fibres of {:.4g} µm in {:.4g} × {:.4g} µm",
+                    plied ? fmt::format("{} plies of ", yarn.plies) : "", yarn.fibres,
                     yarn.section == YarnSection::parallel ? "parallel" : "twisted",
                     yarn.fibre.diameter_um, yarn.width_um, yarn.height_um);
     text += twist_text(yarn.twist_per_m);
@@ -70,8 +70,19 @@ std::string yarn_text(const char* name, const YarnSpec& yarn, double per_cm, dou
         text +=
             ", plied" + (yarn.ply_twist_per_m == 0 ? std::string(" without twist")
                                                    : twist_text(yarn.ply_twist_per_m).substr(1));
-    return text + irregularity_text(yarn) +
-           fmt::format(", cover {:.3f}, crimp {:.1f} %\n", cover, 100 * crimp);
+    return text + irregularity_text(yarn);
+}
+
+/// `named` has the named yarn of each thread, or is empty where all are `yarn`.
+std::string system_text(const Cloth& cloth, const char* name, const YarnSpec& yarn,
+                        const std::vector<int>& named, double per_cm, double cover, double crimp) {
+    std::string text = fmt::format("{}: {} per cm, ", name, per_cm);
+    for (size_t i = 0; i < cloth.yarns.size(); ++i)
+        if (const auto threads = std::count(named.begin(), named.end(), int(i)); threads > 0)
+            text += fmt::format("{} of {} {}, ", threads, named.size(), cloth.yarns[i].name);
+    if (named.empty())
+        text += yarn_text(yarn) + ", ";
+    return text + fmt::format("cover {:.3f}, crimp {:.1f} %\n", cover, 100 * crimp);
 }
 
 } // namespace
@@ -108,8 +119,12 @@ Info cloth_info(const std::filesystem::path& path) {
     info.text =
         fmt::format("Cloth \"{}\", bands {}\n", cloth.name, fmt::join(cloth.bands.names, ", ")) +
         draft_text(cloth.draft) +
-        yarn_text("warp", cloth.warp, cloth.ends_per_cm, element.warp_cover, element.crimp_warp) +
-        yarn_text("weft", cloth.weft, cloth.picks_per_cm, element.weft_cover, element.crimp_weft);
+        system_text(cloth, "warp", cloth.warp, cloth.draft.warp_yarns, cloth.ends_per_cm,
+                    element.warp_cover, element.crimp_warp) +
+        system_text(cloth, "weft", cloth.weft, cloth.draft.weft_yarns, cloth.picks_per_cm,
+                    element.weft_cover, element.crimp_weft);
+    for (const NamedYarn& yarn : cloth.yarns)
+        info.text += fmt::format("yarn {}: {}\n", yarn.name, yarn_text(yarn.yarn));
     fmt::format_to(std::back_inserter(info.text),
                    "micro-element: {:.4g} × {:.4g} µm, {:.4g} µm thick, {} fibres, {} segments, "
                    "cover factor {:.3f}, {:.2f} % of the fibre surface overlaps\n",

@@ -2,6 +2,7 @@
 #include "renderer/core/math.h"
 #include "renderer/core/parallel.h"
 #include "vgsp/micro_element.h"
+#include "vgsp/weave.h"
 
 #include <gtest/gtest.h>
 #include <map>
@@ -247,6 +248,58 @@ TEST(MicroElement, PliedYarnsCloseWithAllTheirFibres) {
         EXPECT_LT(element.overlap_fraction, 0.01);
         EXPECT_LE(largest_turn_degrees(element), 1 + 1e-6);
     }
+}
+
+TEST(MicroElement, UnequalYarnsTouchAtEveryCrossing) {
+    Cloth cloth = filament_cloth("twill 2/1 Z");
+    cloth.yarns = {{"thick", parallel_yarn(19, 130, 130, 20)},
+                   {"thin", parallel_yarn(7, 80, 70, 16)},
+                   {"flat", parallel_yarn(12, 140, 60, 14)}};
+    cloth.draft = tiled(cloth.draft, 6, 3);
+    cloth.draft.warp_yarns = {0, 0, 1, 0, 1, 1};
+    cloth.draft.weft_yarns = {2, 1, 2};
+    const MicroElement element = build_micro_element(cloth);
+    EXPECT_LT(element.overlap_fraction, 0.001);
+    // Kinds: the named yarns alone. Counts of fibres by kind.
+    std::map<uint32_t, double> crossing;
+    for (const FibreChain& chain : element.fibres.chains)
+        crossing[chain.kind] += chain.period.y / element.fibres.cell.y;
+    EXPECT_NEAR(crossing[0], 3 * 19, 1e-9);
+    EXPECT_NEAR(crossing[1], 3 * 7, 1e-9);
+    EXPECT_NEAR(crossing[2], 0, 1e-9); // only in the weft
+
+    // The highest fibres of an end under a pick meet the lowest of the pick, without a gap.
+    const double end_spacing = 1e4 / 36, pick_spacing = 1e4 / 30;
+    const double half[] = {65, 35, 30};
+    for (int pick = 0; pick < 3; ++pick)
+        for (int end = 0; end < 6; ++end) {
+            const double x = (end + 0.5) * end_spacing, y = (pick + 0.5) * pick_spacing;
+            const auto mean_height = [&](bool warp) {
+                double sum = 0;
+                int count = 0;
+                for (const FibreChain& chain : element.fibres.chains)
+                    if ((chain.period.y > 0) == warp)
+                        for (const dvec2& p : passes(chain, warp ? 1 : 0, warp ? y : x))
+                            if (std::abs(p.x - (warp ? x : y)) < 80)
+                                sum += p.y, ++count;
+                return sum / count;
+            };
+            const double apart =
+                half[cloth.draft.warp_yarns[end]] + half[cloth.draft.weft_yarns[pick]];
+            EXPECT_NEAR(mean_height(true) - mean_height(false),
+                        cloth.draft.up(end, pick) ? apart : -apart, 4);
+        }
+}
+
+TEST(MicroElement, EqualNamedYarnsMakeTheSameCloth) {
+    const Cloth simple = filament_cloth("satin 5/2");
+    Cloth named = simple;
+    named.yarns = {{"a", simple.warp}, {"b", simple.weft}, {"c", simple.warp}};
+    named.draft.warp_yarns = {0, 2, 2, 0, 2};
+    named.draft.weft_yarns = {1, 1, 1, 1, 1};
+    const MicroElement a = build_micro_element(simple), b = build_micro_element(named);
+    EXPECT_EQ(a.segments, b.segments);
+    EXPECT_LT(departure(a, b, [](const dvec3& p) { return p; }), 1e-6);
 }
 
 TEST(MicroElement, WeighsItsFibres) {

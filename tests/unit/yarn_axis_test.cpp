@@ -196,11 +196,13 @@ TEST(YarnAxis, MeanSlopeIsTheAverage) {
 TEST(YarnAxis, SmallestSpacingIsWhereTheLineVanishes) {
     const WrapCurve circle({60, 60}, 50);
     for (double crimp : {0.0, 80.0, 150.0, 220.0})
-        EXPECT_NEAR(circle.smallest_spacing(crimp), std::sqrt(220 * 220 - crimp * crimp), 1e-4);
+        EXPECT_NEAR(WrapPassage(circle, circle, crimp).smallest_spacing(),
+                    std::sqrt(220 * 220 - crimp * crimp), 1e-4);
 
     for (SectionOutline crossed : {SectionOutline{60, 60}, SectionOutline{100, 40}}) {
         Setting cloth{crossed, 50, 0, 0.4};
-        cloth.spacing = cloth.wrap().smallest_spacing(0.6 * cloth.both());
+        cloth.spacing =
+            WrapPassage(cloth.wrap(), cloth.wrap(), 0.6 * cloth.both()).smallest_spacing();
         const YarnAxis axis = cloth.axis(kPlain);
         for (double s = 0; s < axis.length(); s += 0.5)
             EXPECT_NEAR(length(position(axis, s + 0.5) - position(axis, s)), 0.5, 1e-4);
