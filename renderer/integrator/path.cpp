@@ -47,12 +47,10 @@ Frame frame_for(const SurfacePoint& point, const glm::vec3& eye) {
 /// Light scattered towards the eye out of one sampled direction of one sampled light.
 Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& frame,
                  const glm::vec3& eye, Sampler& sampler) {
-    const float u = sampler.next_1d();
-    const glm::vec2 v = sampler.next_2d();
-    const auto choice = scene.choose_light(u);
+    const auto choice = scene.choose_light(sampler.next_1d());
     if (!choice)
         return Rgb(0);
-    const auto light = choice->light->sample(point.position, v);
+    const auto light = choice->light->sample(point.position, sampler.next_2d());
     if (!light)
         return Rgb(0);
     const glm::vec3 local = frame.to_local(light->direction);

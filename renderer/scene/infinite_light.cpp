@@ -1,33 +1,23 @@
-#include "renderer/core/warp.h"
 #include "renderer/scene/image_light.h"
 #include "renderer/scene/light.h"
-
-#include <limits>
 
 namespace rapport {
 namespace {
 
-/// Equal radiance from everywhere.
+/// Equal radiance from everywhere. It has no samples of its own: directions drawn from the BSDF are
+/// already in proportion to what such a light contributes, and to mix in others would add noise.
 class ConstantLight final : public Light {
   public:
     explicit ConstantLight(const Rgb& radiance) : radiance_(radiance) {}
 
-    void prepare(const glm::vec3&, float scene_radius) override { scene_radius_ = scene_radius; }
-
-    std::optional<LightSample> sample(const glm::vec3&, const glm::vec2& u) const override {
-        return LightSample{square_to_uniform_sphere(u), std::numeric_limits<float>::infinity(),
-                           radiance_, uniform_sphere_pdf<float>(), false};
+    std::optional<LightSample> sample(const glm::vec3&, const glm::vec2&) const override {
+        return std::nullopt;
     }
     Rgb escaped(const glm::vec3&) const override { return radiance_; }
-    float escaped_pdf(const glm::vec3&) const override { return uniform_sphere_pdf<float>(); }
-
-    float power() const override {
-        return 4 * square(static_cast<float>(kPi) * scene_radius_) * luminance(radiance_);
-    }
+    float power() const override { return 0; }
 
   private:
     Rgb radiance_;
-    float scene_radius_ = 1;
 };
 
 /// Light from all around, infinitely far: of one radiance, or an image's.

@@ -39,7 +39,8 @@ class Light {
         (void)direction;
         return 0;
     }
-    /// Emitted power, up to a common factor, by which lights are chosen.
+    /// Emitted power, up to a common factor, by which lights are chosen to be sampled; 0 for one
+    /// that is left to rays that happen to meet it.
     virtual float power() const = 0;
 };
 

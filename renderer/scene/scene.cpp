@@ -52,12 +52,13 @@ Scene::Scene(std::vector<Surface> surfaces, std::vector<std::shared_ptr<Light>> 
         shining += light->power() > 0;
     }
     for (size_t i = 0; i < all.size(); ++i) {
-        if (!(all[i]->power() > 0))
-            continue;
-        const double probability = 0.5 * (1.0 / shining + all[i]->power() / total);
-        const LightChoice choice{all[i], static_cast<float>(probability)};
-        choices_.push_back(choice);
-        probability_[all[i]] = choice.probability;
+        LightChoice choice{all[i], 0};
+        if (all[i]->power() > 0) {
+            choice.probability =
+                static_cast<float>(0.5 * (1.0 / shining + all[i]->power() / total));
+            choices_.push_back(choice);
+            probability_[all[i]] = choice.probability;
+        }
         if (i < lights_.size())
             distant_lights_.push_back(choice);
     }

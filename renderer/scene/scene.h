@@ -54,7 +54,7 @@ class Scene {
 
     /// Picks a light, half of the times by power and half uniformly: a sky over a wide scene has so
     /// much power that the lamp beside a garment would hardly ever be chosen by it. `probability`
-    /// is that of the choice. Nothing if all is dark.
+    /// is that of the choice. Nothing if no light is sampled.
     struct LightChoice {
         const Light* light;
         float probability;

@@ -75,7 +75,8 @@ class BrokenBsdf final : public Bsdf {
 
 TEST(Render, ANanStopsWithThePixel) {
     const Scene broken({tests::surface(tests::level_square(1, 0), std::make_shared<BrokenBsdf>())},
-                       {tests::sky(1)}, tests::parallel_camera({0, 0, 2}, {0, 0, 0}, 0.5f, 4),
+                       {tests::sun(1, {0, 0, 1})},
+                       tests::parallel_camera({0, 0, 2}, {0, 0, 0}, 0.5f, 4),
                        tests::settings(2, 2));
     try {
         render(broken);

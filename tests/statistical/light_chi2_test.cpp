@@ -116,7 +116,6 @@ TEST(LightChiSquare, SamplesFollowTheirDensity) {
     const glm::mat4 turned = glm::rotate(glm::mat4(1), 0.7f, glm::normalize(glm::vec3(1, 2, 3)));
     const glm::mat4 mirrored = glm::scale(turned, glm::vec3(-2, 2, 2));
     const std::vector<LightCase> cases{
-        infinite_case("constant", tests::sky(1)),
         infinite_case("octahedral", image_light(test_image(folder, 12, 12), turned)),
         infinite_case("latitude-longitude", image_light(test_image(folder, 24, 12), mirrored)),
         area_case(),

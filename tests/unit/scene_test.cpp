@@ -147,6 +147,14 @@ TEST(SceneLights, AreChosenHalfByPowerAndHalfUniformly) {
     EXPECT_FALSE(scene_of({}).choose_light(0.5f));
 }
 
+TEST(SceneLights, AConstantSkyIsLeftToScattering) {
+    const Scene scene({}, {tests::sky(2)}, Camera{}, RenderSettings{});
+    EXPECT_FALSE(scene.choose_light(0.5f));
+    ASSERT_EQ(scene.distant_lights().size(), 1u);
+    EXPECT_EQ(scene.distant_lights()[0].probability, 0);
+    EXPECT_EQ(scene.distant_lights()[0].light->escaped({0, 0, 1}), Rgb(2));
+}
+
 TEST(Registries, HoldWhatIsShipped) {
     EXPECT_EQ(LightRegistry::instance().names(), (std::vector<std::string>{"distant", "infinite"}));
     EXPECT_EQ(ShapeRegistry::instance().names(),
