@@ -12,7 +12,12 @@ namespace {
 constexpr float kAzimuth = 30, kElevation = 12; ///< of the camera [degrees]
 constexpr float kFov = 30;                      ///< [degrees], of the shorter side
 constexpr float kMargin = 1.06f;
-constexpr float kSky = 0.5f, kSun = 1.6f; ///< radiance and irradiance
+constexpr float kSky = 0.5f; ///< radiance
+// The lamp is a square, as wide as several bins of a table, lest their edges show on the cloth; it
+// stands behind the camera, out of the picture.
+constexpr float kLampDistance = 10;     ///< from the model's centre, in radii of the model
+constexpr float kLampHalfAngle = 10;    ///< under which it is seen from there [degrees]
+constexpr float kLampIrradiance = 1.6f; ///< there, on what faces it
 constexpr float kGrey = 0.5f;
 
 class ParamsMaker {
@@ -25,8 +30,14 @@ class ParamsMaker {
     ParamsMaker& grey(const std::string& name, double value) {
         return add("rgb", name, {value, value, value}, {});
     }
-    ParamsMaker& point(const std::string& name, const glm::vec3& p) {
-        return add("point3", name, {p.x, p.y, p.z}, {});
+    ParamsMaker& points(const std::string& name, const std::vector<glm::vec3>& points) {
+        std::vector<double> numbers;
+        for (const glm::vec3& p : points)
+            numbers.insert(numbers.end(), {p.x, p.y, p.z});
+        return add("point3", name, std::move(numbers), {});
+    }
+    ParamsMaker& integers(const std::string& name, std::vector<double> numbers) {
+        return add("integer", name, std::move(numbers), {});
     }
     Params done() { return std::move(params_); }
 
@@ -45,16 +56,28 @@ glm::vec3 around_y(float azimuth, float elevation) {
     return {std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a)};
 }
 
-/// Looks against `towards_camera`, upright, as near as the frame holds every vertex.
-Camera frame_model(const GltfModel& model, const glm::vec3& towards_camera,
-                   const glm::ivec2& resolution) {
-    glm::vec3 low(std::numeric_limits<float>::infinity()), high = -low;
+struct Bounds {
+    glm::vec3 low{std::numeric_limits<float>::infinity()};
+    glm::vec3 high = -low;
+
+    glm::vec3 centre() const { return 0.5f * (low + high); }
+    float radius() const { return 0.5f * glm::length(high - low); }
+};
+
+Bounds bounds_of(const GltfModel& model) {
+    Bounds bounds;
     for (const GltfPart& part : model.parts)
         for (const glm::vec3& p : part.mesh.positions) {
-            low = glm::min(low, p);
-            high = glm::max(high, p);
+            bounds.low = glm::min(bounds.low, p);
+            bounds.high = glm::max(bounds.high, p);
         }
-    const glm::vec3 centre = 0.5f * (low + high), forward = -towards_camera;
+    return bounds;
+}
+
+/// Looks against `towards_camera`, upright, as near as the frame holds every vertex.
+Camera frame_model(const GltfModel& model, const glm::vec3& centre, const glm::vec3& towards_camera,
+                   const glm::ivec2& resolution) {
+    const glm::vec3 forward = -towards_camera;
     // Right-handed geometry is seen unmirrored when right = forward × up.
     const glm::vec3 right = glm::normalize(glm::cross(forward, glm::vec3(0, 1, 0)));
     const glm::vec3 up = glm::cross(right, forward);
@@ -77,6 +100,29 @@ Camera frame_model(const GltfModel& model, const glm::vec3& towards_camera,
     return camera;
 }
 
+/// A square that faces the model from where `towards_lamp` points.
+ShapeDescription lamp(const std::filesystem::path& path, const Bounds& bounds,
+                      const glm::vec3& towards_lamp) {
+    const float distance = kLampDistance * bounds.radius();
+    const float half_side = distance * std::tan(radians(kLampHalfAngle));
+    const glm::vec3 centre = bounds.centre() + distance * towards_lamp;
+    const glm::vec3 right =
+        half_side * glm::normalize(glm::cross(glm::vec3(0, 1, 0), towards_lamp));
+    const glm::vec3 up = glm::cross(right, -towards_lamp);
+    const double solid_angle = square(2 * half_side / distance); // but for the slant of its corners
+    ShapeDescription shape;
+    shape.type = "trianglemesh";
+    shape.params = ParamsMaker(path, "the lamp")
+                       .points("P", {centre - right - up, centre + right - up, centre + right + up,
+                                     centre - right + up})
+                       .integers("indices", {0, 2, 1, 0, 3, 2})
+                       .done();
+    shape.material = std::make_shared<MaterialDescription>();
+    shape.area_light =
+        ParamsMaker(path, "the lamp's light").grey("L", kLampIrradiance / solid_angle).done();
+    return shape;
+}
+
 } // namespace
 
 SceneDescription describe_model(const std::filesystem::path& path, const glm::ivec2& resolution) {
@@ -86,15 +132,10 @@ SceneDescription describe_model(const std::filesystem::path& path, const glm::iv
         throw FileError(path.string(), "", "a model with triangles", "none");
     SceneDescription scene;
     scene.path = path;
-    scene.camera = frame_model(model, around_y(kAzimuth, kElevation), resolution);
-
-    LightDescription sky{"infinite", ParamsMaker(path, "the sky").grey("L", kSky).done()};
-    LightDescription sun{"distant", ParamsMaker(path, "the sun")
-                                        .grey("L", kSun)
-                                        .point("from", around_y(kAzimuth - 50, 45))
-                                        .point("to", glm::vec3(0))
-                                        .done()};
-    scene.lights = {std::move(sky), std::move(sun)};
+    const Bounds bounds = bounds_of(model);
+    scene.camera = frame_model(model, bounds.centre(), around_y(kAzimuth, kElevation), resolution);
+    scene.lights = {{"infinite", ParamsMaker(path, "the sky").grey("L", kSky).done()}};
+    scene.shapes.push_back(lamp(path, bounds, around_y(kAzimuth - 50, 45)));
 
     auto grey = std::make_shared<MaterialDescription>();
     grey->params = ParamsMaker(path, "the grey").grey("reflectance", kGrey).done();

@@ -261,6 +261,10 @@ TEST(ModelScene, FramesTheWholeModel) {
     for (const Surface& surface : scene.surfaces())
         for (const glm::vec3& p : surface.mesh.positions) {
             const glm::vec3 c(to_camera * glm::vec4(p, 1));
+            if (surface.emission != Rgb(0)) { // the lamp stays out of the picture
+                ASSERT_LT(c.z, 0);
+                continue;
+            }
             ASSERT_GT(c.z, 0);
             fill = std::max({fill, std::abs(c.x) / c.z / (1.5f * t), std::abs(c.y) / c.z / t});
         }
