@@ -8,6 +8,7 @@
 #include "renderer/scene/table_loader.h"
 
 #include <chrono>
+#include <csignal>
 #include <fmt/format.h>
 #include <iostream>
 #include <memory>
@@ -19,7 +20,8 @@ namespace {
 struct RenderOptions {
     std::string scene, size;
     std::vector<std::string> cloths, outputs;
-    int samples = 0; ///< 0 = as the scene says
+    int samples = 0;  ///< 0 = as the scene says
+    double error = 0; ///< 0 = none is asked for
     double accuracy = 0.2;
 };
 
@@ -60,6 +62,7 @@ SceneDescription describe(const RenderOptions& options, const CommonOptions& com
         description.camera.resolution = parse_size(options.size);
     if (options.samples > 0)
         description.settings.samples = options.samples;
+    description.settings.error = options.error;
     description.settings.seed = common.seed;
     return description;
 }
@@ -106,29 +109,45 @@ Scene load(const RenderOptions& options, const CommonOptions& common,
     return scene;
 }
 
+volatile std::sig_atomic_t interrupted = 0;
+
+/// Renders; Ctrl-C ends it with the samples that there are.
+Film render_watched(const Scene& scene, const CommonOptions& common) {
+    std::optional<ProgressLine> line;
+    if (shows_progress(common))
+        line.emplace(std::cerr, "rendering");
+    std::signal(SIGINT, [](int) { interrupted = 1; });
+    RenderWatcher watcher;
+    watcher.progress = [&](double fraction, double samples) {
+        if (line)
+            line->update(fraction, fmt::format("{:.4g} samples", samples));
+    };
+    watcher.stopped = [] { return interrupted != 0; };
+    Film film = render(scene, watcher);
+    std::signal(SIGINT, SIG_DFL);
+    return film;
+}
+
 void run(const RenderOptions& options, const CommonOptions& common) {
     const SceneDescription description = describe(options, common);
     const std::vector<std::filesystem::path> paths = outputs(options, description.settings.output);
     const Scene scene = load(options, common, description);
 
-    std::optional<ProgressLine> line;
-    if (shows_progress(common))
-        line.emplace(std::cerr, "rendering");
     const auto start = std::chrono::steady_clock::now();
-    Image image = render(scene, [&](double fraction) {
-        if (line)
-            line->update(fraction, fmt::format("{} samples", scene.settings.samples));
-    });
-    line.reset();
+    const Film film = render_watched(scene, common);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::string samples = fmt::format("{:.4g}", film.mean_samples());
+    const std::string noise = fmt::format("{:.4g}", film.noise().relative());
 
     std::string command = "rapport render " + options.scene;
     for (const std::string& cloth : options.cloths)
         command += " --cloth " + cloth;
+    Image image = film.image();
     image.attributes["command"] = command;
     image.attributes["seed"] = std::to_string(common.seed);
-    image.attributes["samples"] = std::to_string(scene.settings.samples);
+    image.attributes["samples"] = samples;
+    image.attributes["noise"] = noise;
     image.attributes["seconds"] = fmt::format("{:.3f}", seconds);
     for (const std::filesystem::path& path : paths) {
         if (lower_extension(path) == ".exr")
@@ -136,8 +155,9 @@ void run(const RenderOptions& options, const CommonOptions& common) {
         else
             write_png(image, path);
         if (!common.quiet)
-            fmt::print("{}: {} x {}, {} samples a pixel, {:.1f} s\n", path.string(), image.width,
-                       image.height, scene.settings.samples, seconds);
+            fmt::print("{}: {} x {}, {} samples a pixel, relative noise {}, {:.1f} s{}\n",
+                       path.string(), image.width, image.height, samples, noise, seconds,
+                       interrupted ? ", interrupted" : "");
     }
 }
 
@@ -152,8 +172,13 @@ void add_render_command(CLI::App& app, const CommonOptions& common) {
     command->add_option("--cloth", options->cloths,
                         "Cloth (.bsdf, .toml or .wif) for every glTF material, or as "
                         "MATERIAL=CLOTH for one (repeatable)");
-    command->add_option("--spp", options->samples, "Samples per pixel")
-        ->check(CLI::Range(1, 1 << 24));
+    CLI::Option* const samples = command->add_option("--spp", options->samples, "Samples per pixel")
+                                     ->check(CLI::Range(1, 1 << 24));
+    command
+        ->add_option("--error", options->error,
+                     "Relative noise to reach in the picture and in 95 % of its tiles")
+        ->check(CLI::Range(1e-4, 1.0))
+        ->excludes(samples);
     command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels");
     command
         ->add_option("--accuracy", options->accuracy,

@@ -2,6 +2,7 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/integrator/path.h"
+#include "renderer/integrator/sample_plan.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -11,100 +12,107 @@
 namespace rapport {
 namespace {
 
-constexpr int kTile = 16; ///< pixels along its side
-
-const std::vector<std::string> kMeans{"R",   "G",   "B",   "albedo.R", "albedo.G", "albedo.B",
-                                      "N.X", "N.Y", "N.Z", "warp.X",   "warp.Y",   "warp.Z"};
-const std::vector<std::string> kVariances{"variance.R", "variance.G", "variance.B"};
-
-/// Sums over one pixel's samples, in double and in the order of the samples.
-struct PixelSums {
-    glm::dvec3 radiance{0}, squares{0}, albedo{0}, normal{0}, warp{0};
-    double depth = 0;
-    int hits = 0;
-
-    void add(const PathResult& path, const CameraRays& rays, const glm::vec3& direction) {
-        const glm::dvec3 value(path.radiance);
-        radiance += value;
-        squares += value * value;
-        if (!path.first)
-            return;
-        const SurfacePoint& point = *path.first;
-        albedo += point.surface->material->albedo(point.frame.to_local(-direction));
-        normal += point.frame.z;
-        warp += point.frame.y;
-        depth += rays.depth(point.position);
-        ++hits;
-    }
-
-    void store(Image& image, size_t pixel, int samples) const {
-        size_t plane = 0;
-        for (const glm::dvec3& sum : {radiance, albedo, normal, warp})
-            for (int c = 0; c < 3; ++c)
-                image.data[plane++][pixel] = static_cast<float>(sum[c] / samples);
-        image.data[plane++][pixel] = static_cast<float>(hits > 0 ? depth / hits : 0);
-        if (samples < 2)
-            return;
-        for (int c = 0; c < 3; ++c) {
-            const double spread = squares[c] - radiance[c] * radiance[c] / samples;
-            image.data[plane++][pixel] = static_cast<float>(
-                std::max(0.0, spread) / (static_cast<double>(samples) * (samples - 1)));
-        }
-    }
-};
-
-std::vector<std::string> channels(int samples) {
-    std::vector<std::string> names = kMeans;
-    names.push_back("Z");
-    if (samples > 1)
-        names.insert(names.end(), kVariances.begin(), kVariances.end());
-    return names;
-}
+constexpr int kPass = 16;  ///< samples of a pixel in one go; an interrupted picture is as even
+constexpr int kPilot = 16; ///< samples of every pixel before the first plan
 
 bool finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); }
 
-PixelSums render_pixel(const Scene& scene, const CameraRays& rays, int x, int y) {
+FilmSample take_sample(const Scene& scene, const CameraRays& rays, int x, int y, int number) {
     const RenderSettings& settings = scene.settings;
-    const uint64_t index = static_cast<uint64_t>(y) * scene.camera.resolution.x + x;
-    PixelSums sums;
-    for (int sample = 0; sample < settings.samples; ++sample) {
-        Sampler sampler(settings.sampler, settings.seed, index, static_cast<uint32_t>(sample));
-        // Uniform over the box filter, so that every sample has weight 1.
-        const glm::vec2 offset = (2.0f * sampler.next_2d() - 1.0f) * settings.filter_radius;
-        const kernel::Ray ray = rays(glm::vec2(x, y) + 0.5f + offset);
-        const PathResult path = trace_path(scene, ray, sampler);
-        if (!finite(path.radiance))
-            throw std::runtime_error(
-                fmt::format("pixel ({}, {}), sample {}: radiance [{} {} {}] is not finite", x, y,
-                            sample, path.radiance.r, path.radiance.g, path.radiance.b));
-        sums.add(path, rays, ray.dir);
-    }
-    return sums;
+    const uint64_t pixel = static_cast<uint64_t>(y) * scene.camera.resolution.x + x;
+    Sampler sampler(settings.sampler, settings.seed, pixel, static_cast<uint32_t>(number));
+    // Uniform over the box filter, so that every sample has weight 1.
+    const glm::vec2 offset = (2.0f * sampler.next_2d() - 1.0f) * settings.filter_radius;
+    const kernel::Ray ray = rays(glm::vec2(x, y) + 0.5f + offset);
+    const PathResult path = trace_path(scene, ray, sampler);
+    if (!finite(path.radiance))
+        throw std::runtime_error(
+            fmt::format("pixel ({}, {}), sample {}: radiance [{} {} {}] is not finite", x, y,
+                        number, path.radiance.r, path.radiance.g, path.radiance.b));
+    if (!path.first)
+        return {path.radiance};
+    const SurfacePoint& point = *path.first;
+    return {path.radiance,
+            true,
+            point.surface->material->albedo(point.frame.to_local(-ray.dir)),
+            point.frame.z,
+            point.frame.y,
+            rays.depth(point.position)};
 }
+
+/// Brings tiles to the samples that are planned for each, all of them evenly.
+class Rendering {
+  public:
+    Rendering(const Scene& scene, const RenderWatcher& watcher)
+        : film(scene.camera.resolution), scene_(scene), rays_(scene.camera), watcher_(watcher) {}
+
+    /// False if it was stopped.
+    bool bring_to(const std::vector<int>& plan) {
+        const int most = *std::ranges::max_element(plan);
+        planned_ = 0;
+        for (size_t i = 0; i < plan.size(); ++i)
+            planned_ += static_cast<double>(plan[i]) * pixels(film.tiles()[i]);
+        if (film.tiles()[0].samples == 0)
+            pass(plan, 1);
+        for (int samples = kPass; samples - kPass < most && !stopped(); samples += kPass)
+            pass(plan, samples);
+        return !stopped();
+    }
+
+    Film film;
+
+  private:
+    static double pixels(const Film::Tile& tile) {
+        const glm::ivec2 size = tile.end - tile.first;
+        return static_cast<double>(size.x) * size.y;
+    }
+    bool stopped() const { return watcher_.stopped && watcher_.stopped(); }
+
+    void pass(const std::vector<int>& plan, int samples) {
+        std::vector<size_t> open;
+        for (size_t i = 0; i < plan.size(); ++i)
+            if (film.tiles()[i].samples < std::min(plan[i], samples))
+                open.push_back(i);
+        parallel_for(open.size(), [&](size_t number) {
+            Film::Tile& tile = film.tiles()[open[number]];
+            if (tile.samples > 0 && stopped())
+                return;
+            const int end = std::min(plan[open[number]], samples), start = tile.samples;
+            for (int y = tile.first.y; y < tile.end.y; ++y)
+                for (int x = tile.first.x; x < tile.end.x; ++x)
+                    for (int sample = start; sample < end; ++sample)
+                        film.add(x, y, take_sample(scene_, rays_, x, y, sample));
+            tile.samples = end;
+            const std::scoped_lock lock(mutex_);
+            taken_ += (end - start) * pixels(tile);
+            if (watcher_.progress)
+                watcher_.progress(
+                    taken_ / planned_,
+                    planned_ / (static_cast<double>(film.resolution().x) * film.resolution().y));
+        });
+    }
+
+    const Scene& scene_;
+    const CameraRays rays_;
+    const RenderWatcher& watcher_;
+    double planned_ = 0, taken_ = 0; ///< samples of all pixels
+    std::mutex mutex_;
+};
 
 } // namespace
 
-Image render(const Scene& scene, const std::function<void(double)>& progress) {
-    const glm::ivec2 size = scene.camera.resolution;
-    Image image(size.x, size.y, channels(scene.settings.samples));
-    const CameraRays rays(scene.camera);
-    const glm::ivec2 tiles = (size + kTile - 1) / kTile;
-    const size_t count = static_cast<size_t>(tiles.x) * tiles.y;
-    std::mutex progress_mutex;
-    size_t finished = 0;
-    parallel_for(count, [&](size_t tile) {
-        const glm::ivec2 first = kTile * glm::ivec2(tile % tiles.x, tile / tiles.x);
-        const glm::ivec2 end = glm::min(first + kTile, size);
-        for (int y = first.y; y < end.y; ++y)
-            for (int x = first.x; x < end.x; ++x)
-                render_pixel(scene, rays, x, y)
-                    .store(image, static_cast<size_t>(y) * size.x + x, scene.settings.samples);
-        const std::scoped_lock lock(progress_mutex);
-        ++finished;
-        if (progress)
-            progress(static_cast<double>(finished) / static_cast<double>(count));
-    });
-    return image;
+Film render(const Scene& scene, const RenderWatcher& watcher) {
+    Rendering rendering(scene, watcher);
+    const RenderSettings& settings = scene.settings;
+    std::vector<int> plan(rendering.film.tiles().size(),
+                          settings.error > 0 ? kPilot : settings.samples);
+    while (rendering.bring_to(plan) && settings.error > 0) {
+        std::vector<int> next = plan_samples(rendering.film, settings.error);
+        if (next == plan)
+            break;
+        plan = std::move(next);
+    }
+    return std::move(rendering.film);
 }
 
 } // namespace rapport

@@ -1,25 +1,26 @@
 #pragma once
 
-#include "renderer/core/image.h"
+#include "renderer/integrator/film.h"
 #include "renderer/scene/scene.h"
 
 #include <functional>
 
 namespace rapport {
 
+struct RenderWatcher {
+    /// Told the finished share of the samples that are planned so far, (0, 1], and the samples of a
+    /// pixel that it is a share of (in the mean); from any thread but never from two at a time.
+    std::function<void(double fraction, double samples)> progress;
+    /// Asked from any thread; once true, the picture is made of the samples that there are. The
+    /// first sample of every pixel is taken in any case.
+    std::function<bool()> stopped;
+};
+
 /// Renders with next-event estimation, MIS (balance heuristic), Russian roulette and null
-/// interactions for the unscattered beam. The same seed gives the same pixels, whatever the number
-/// of threads.
+/// interactions for the unscattered beam, to the samples or the error of the scene's settings (see
+/// sample_plan.h). The same seed gives the same pixels, whatever the number of threads.
 ///
-/// Channels: R, G, B radiance; at the first surface that a ray meets, albedo.{R,G,B} and the unit
-/// shading normal N.{X,Y,Z} and warp direction warp.{X,Y,Z} of the face side, in world space, as
-/// means over the pixel (0 for samples that meet nothing); Z, the mean distance along the viewing
-/// direction of the samples that meet something (0 if none do); and, from two samples up,
-/// variance.{R,G,B}: that of the pixel's mean, estimated as if samples were independent, hence from
-/// above for Sobol points.
-///
-/// `progress` is told the finished share, (0, 1], from any thread but never from two at a time.
 /// Throws std::runtime_error naming the pixel where a radiance is not finite.
-Image render(const Scene& scene, const std::function<void(double)>& progress = {});
+Film render(const Scene& scene, const RenderWatcher& watcher = {});
 
 } // namespace rapport

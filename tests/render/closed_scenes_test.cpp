@@ -21,7 +21,7 @@ const Camera kSpot = tests::parallel_camera({0.2f, 0.1f, 0.3f}, {0, 0, 0}, 1e-3f
 
 Image picture(const Surfaces& surfaces, const Lights& lights, const RenderSettings& how,
               const Camera& camera = kSpot) {
-    return render(Scene(surfaces, lights, camera, how));
+    return render(Scene(surfaces, lights, camera, how)).image();
 }
 
 /// An image of `radiance` without noise, to compare with.
@@ -198,8 +198,8 @@ Scene mixed_scene(Sampler::Kind sampler, uint64_t seed, int samples) {
 
 TEST(MixedScene, AgreesWithTheSimpleEstimatorAndBothSamplers) {
     const int samples = tests::long_run() ? 4096 : 512;
-    const Image image = render(mixed_scene(Sampler::Kind::independent, 1, samples));
-    const Image sobol = render(mixed_scene(Sampler::Kind::sobol, 2, samples));
+    const Image image = render(mixed_scene(Sampler::Kind::independent, 1, samples)).image();
+    const Image sobol = render(mixed_scene(Sampler::Kind::sobol, 2, samples)).image();
     const Scene scene = mixed_scene(Sampler::Kind::independent, 3, 1);
     const Image simple = simple_picture(scene, 2 * samples, false);
     EXPECT_TRUE(compare(image, sobol).agree) << compare(image, sobol).p_value;

@@ -24,12 +24,12 @@ Scene scene(Sampler::Kind sampler, uint64_t seed) {
 TEST(Determinism, PixelsDoNotDependOnTheThreads) {
     for (const auto sampler : {Sampler::Kind::independent, Sampler::Kind::sobol}) {
         set_thread_count(1);
-        const Image one = render(scene(sampler, 0));
+        const Image one = render(scene(sampler, 0)).image();
         for (const int threads : {2, 7}) {
             set_thread_count(threads);
-            EXPECT_EQ(render(scene(sampler, 0)).data, one.data) << threads << " threads";
+            EXPECT_EQ(render(scene(sampler, 0)).image().data, one.data) << threads << " threads";
         }
-        EXPECT_NE(render(scene(sampler, 1)).data, one.data); // another seed
+        EXPECT_NE(render(scene(sampler, 1)).image().data, one.data); // another seed
     }
     set_thread_count(0);
 }
@@ -37,10 +37,13 @@ TEST(Determinism, PixelsDoNotDependOnTheThreads) {
 TEST(Render, WritesTheChannelsItPromises) {
     Scene small = scene(Sampler::Kind::sobol, 0);
     double last = 0;
-    const Image image = render(small, [&](double share) {
+    RenderWatcher watcher;
+    watcher.progress = [&](double share, double samples) {
         EXPECT_GT(share, last);
+        EXPECT_EQ(samples, small.settings.samples);
         last = share;
-    });
+    };
+    const Image image = render(small, watcher).image();
     EXPECT_EQ(last, 1);
     EXPECT_EQ(image.channels.size(), 16u);
     for (const auto& plane : image.data)
@@ -58,7 +61,7 @@ TEST(Render, WritesTheChannelsItPromises) {
     EXPECT_LT(at("Z", floor), 9);
 
     small.settings.samples = 1;
-    EXPECT_EQ(render(small).find("variance.R"), nullptr);
+    EXPECT_EQ(render(small).image().find("variance.R"), nullptr);
 }
 
 class BrokenBsdf final : public Bsdf {

@@ -19,7 +19,7 @@ struct Measured {
 };
 
 Measured mean_radiance(const Scene& scene) {
-    const Image image = render(scene);
+    const Image image = render(scene).image();
     double sum = 0, variance = 0;
     const auto& radiance = *image.find("R");
     const auto& variances = *image.find("variance.R");

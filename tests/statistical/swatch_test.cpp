@@ -114,7 +114,7 @@ Estimate by_render(std::shared_ptr<const TableBsdf> table, const glm::dvec3& eye
     const Scene scene(std::move(surfaces), {},
                       tests::parallel_camera(0.1f * glm::vec3(eye), {}, 1e-4f, 8),
                       tests::settings(4096, 1));
-    const Image image = render(scene);
+    const Image image = render(scene).image();
     Estimate estimate{0, 0};
     for (int i = 0; i < 64; ++i) {
         estimate.mean += (*image.find("G"))[i] / 64.0;

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "renderer/core/image.h"
+#include "renderer/core/math.h"
+
+#include <vector>
+
+namespace rapport {
+
+/// What one camera path saw.
+struct FilmSample {
+    glm::vec3 radiance{0};
+    bool hit = false; ///< it met a surface, of which the rest tells
+    glm::vec3 albedo{0}, normal{0}, warp{0};
+    float depth = 0; ///< along the viewing direction
+};
+
+/// Sums over the samples of each pixel, in double precision and in the order of the samples. All
+/// pixels of a tile have equally many.
+class Film {
+  public:
+    explicit Film(const glm::ivec2& resolution);
+
+    const glm::ivec2& resolution() const { return resolution_; }
+    struct Tile {
+        glm::ivec2 first, end; ///< pixels [first, end) in x and y
+        int samples = 0;       ///< that every pixel of it has
+    };
+    std::vector<Tile>& tiles() { return tiles_; }
+    const std::vector<Tile>& tiles() const { return tiles_; }
+    double mean_samples() const; ///< per pixel
+
+    /// Adds the next sample of a pixel; `Tile::samples` is the caller's to count up.
+    void add(int x, int y, const FilmSample& sample);
+
+    /// Radiance of a tile, and the variance of its pixels' means as `image` estimates it, both in
+    /// the mean over pixels and channels. No variance from fewer than two samples: infinite.
+    struct Noise {
+        double mean = 0, variance = 0;
+        double relative() const; ///< √variance / mean; 0 where both are 0
+    };
+    Noise noise(const Tile& tile) const;
+    Noise noise() const; ///< of the whole picture
+
+    /// Channels: R, G, B radiance; at the first surface that a ray meets, albedo.{R,G,B} and the
+    /// unit shading normal N.{X,Y,Z} and warp direction warp.{X,Y,Z} of the face side, in world
+    /// space, as means over the pixel (0 for samples that meet nothing); Z, the mean distance along
+    /// the viewing direction of the samples that meet something (0 if none do); and, if every pixel
+    /// has two samples, variance.{R,G,B}: that of the pixel's mean, estimated as if samples were
+    /// independent, hence from above for Sobol points.
+    Image image() const;
+
+  private:
+    struct Pixel {
+        glm::dvec3 radiance{0}, squares{0}, albedo{0}, normal{0}, warp{0};
+        double depth = 0;
+        int hits = 0;
+
+        glm::dvec3 variance_of_mean(int samples) const;
+    };
+    size_t index(int x, int y) const { return static_cast<size_t>(y) * resolution_.x + x; }
+
+    glm::ivec2 resolution_;
+    std::vector<Tile> tiles_;
+    std::vector<Pixel> pixels_;
+};
+
+} // namespace rapport
