@@ -31,7 +31,7 @@ std::vector<FibreSite> fibre_sites(const SectionLayout& section, int packing_ste
         for (int start = 0; start < order * plies; ++start) {
             if (met[start])
                 continue;
-            FibreSite site{position, section.fibre_radius, {}, {}};
+            FibreSite site{position, section.fibre_radius, {}, {}, 0};
             int place = start % order, ply = start / order;
             while (!met[size_t(ply) * order + place]) {
                 met[size_t(ply) * order + place] = 1;
@@ -66,11 +66,15 @@ double smallest_bend(const PlacedYarn& yarn, const Irregularity& irregularity) {
     return bend;
 }
 
+struct WoundYarn {
+    std::vector<kernel::FibreChain> fibres;
+    double volume = 0, thinned = 0; ///< of the fibres as drawn, and what they gave up of it [µm³]
+};
+
 /// The fibres of yarn number `index` of the cell, which lies along `direction`; `random_index`
 /// tells its random numbers from those of all other yarns.
-std::vector<kernel::FibreChain> wind_yarn(const YarnSystem& system, const glm::dvec3& direction,
-                                          size_t index, size_t random_index,
-                                          const MicroElementOptions& options) {
+WoundYarn wind_yarn(const YarnSystem& system, const glm::dvec3& direction, size_t index,
+                    size_t random_index, const MicroElementOptions& options) {
     const YarnAxis& axis = system.axes[index % system.axes.size()];
     const SystemYarn& kind = system.yarn(index);
     const SectionLayout& section = kind.section;
@@ -98,18 +102,21 @@ std::vector<kernel::FibreChain> wind_yarn(const YarnSystem& system, const glm::d
                               std::min(16 * section.fibre_radius, system.spacing / 2)};
     const double sampling_step = std::min(
         2 * joints.max_turn * smallest_bend(yarn, kind.yarn->irregularity), cell_length / 8);
-    std::vector<kernel::FibreChain> chains;
+    WoundYarn wound;
     for (const FibreSite& site : sites) {
         const double cells = double(site.turns.size());
         const ClosedCurve curve{[&](double s) { return yarn.fibre_point(site, s); },
                                 cell_length * cells, sampling_step,
                                 axis.period() * system.repeats * cells * direction};
-        CounterRng dithered = random(Purpose::fibre_dither, chains.size());
+        CounterRng dithered = random(Purpose::fibre_dither, wound.fibres.size());
         const double dither = options.dither ? dithered.uniform() : 0;
-        chains.push_back(
+        wound.fibres.push_back(
             {place_joints(curve, joints, dither), curve.period, site.radius, kind.kind});
+        const double drawn = kPi * square(site.radius) / (1 - site.thinned) * curve.length;
+        wound.volume += drawn;
+        wound.thinned += site.thinned * drawn;
     }
-    return chains;
+    return wound;
 }
 
 /// About the least that the system needs of segments in the cell: what the turns of its axes and
@@ -170,13 +177,18 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
                         fmt::format("{:.2g} for {} ends × {} picks", fewest, ends, picks));
 
     element.fibres.cell = {double(ends) * warp.spacing, double(picks) * weft.spacing};
-    std::vector<std::vector<kernel::FibreChain>> yarns(ends + picks);
+    std::vector<WoundYarn> yarns(ends + picks);
     parallel_for(yarns.size(), [&](size_t k) {
         yarns[k] = k < ends ? wind_yarn(warp, {0, 1, 0}, k, k, options)
                             : wind_yarn(weft, {1, 0, 0}, k - ends, k, options);
     });
-    for (std::vector<kernel::FibreChain>& yarn : yarns)
-        std::move(yarn.begin(), yarn.end(), std::back_inserter(element.fibres.chains));
+    double volume = 0;
+    for (WoundYarn& yarn : yarns) {
+        std::ranges::move(yarn.fibres, std::back_inserter(element.fibres.chains));
+        volume += yarn.volume;
+        element.thinned += yarn.thinned;
+    }
+    element.thinned /= volume;
 
     const std::vector<kernel::FibreSegment> segments = kernel::fibre_segments(element.fibres);
     element.segments = segments.size();

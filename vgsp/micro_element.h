@@ -20,6 +20,7 @@ struct MicroElement {
     double warp_cover = 0, weft_cover = 0; ///< shares of area that the yarns' outlines cover
     double cover_factor = 0;               ///< of both together
     double overlap_fraction = 0; ///< share of sampled fibre surface that lies inside another fibre
+    double thinned = 0;          ///< share of the fibres' volume given up so that they keep clear
     double twist_rounding_warp = 0, twist_rounding_weft = 0; ///< relative; the largest of all yarns
     /// Of the fibres, from their lengths and densities; nothing where a density is not known.
     std::optional<double> mass_g_per_m2;
