@@ -4,6 +4,7 @@
 #include "renderer/core/math.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/rng.h"
+#include "renderer/kernel/fibre_tracer.h"
 #include "vgsp/element_report.h"
 #include "vgsp/fibre_winding.h"
 #include "vgsp/weave.h"
@@ -17,7 +18,7 @@
 namespace rapport {
 namespace {
 
-constexpr double kMaxSegments = 1e7; ///< about 2 GB once they are ready to trace
+constexpr double kMostMemory = 4e9; ///< of the cell, once it is ready to trace [bytes]
 
 /// The fibres of a yarn, one for each chain. After one cell a fibre goes on as the one
 /// `packing_steps` places further round its single and `ply_steps` singles further round the yarn;
@@ -134,6 +135,21 @@ double fewest_segments(const YarnSystem& system, const YarnSystem& crossed,
     return turn * system.repeats * crossed.repeats / radians(options.max_turn_degrees);
 }
 
+/// Refuses a cell that would take too much memory; `bound` says of which kind the number is.
+void check_memory(double segments, const char* bound, const MicroElement& element,
+                  const Cloth& cloth, size_t ends, size_t picks) {
+    const double memory =
+        kernel::FibreTracer::memory(segments, element.fibres.cell, element.thickness_um) +
+        segments * sizeof(glm::dvec3);
+    if (memory > kMostMemory)
+        throw FileError(cloth.path.string(), "draft",
+                        fmt::format("a cell that takes at most {:.2g} GB (fewer fibres, a smaller "
+                                    "repeat, or a twist that closes sooner)",
+                                    kMostMemory * 1e-9),
+                        fmt::format("{} ends × {} picks of {}{:.2g} cylinders, {:.2g} GB", ends,
+                                    picks, bound, segments, memory * 1e-9));
+}
+
 std::optional<double> mass_of(const kernel::FibreAssembly& assembly,
                               const std::vector<kernel::FibreSegment>& segments,
                               const Cloth& cloth) {
@@ -167,16 +183,10 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
     element.repeats_y = warp.repeats;
     const size_t ends = size_t(draft.ends) * weft.repeats;
     const size_t picks = size_t(draft.picks) * warp.repeats;
-    const double fewest =
-        fewest_segments(warp, weft, options) + fewest_segments(weft, warp, options);
-    if (fewest > kMaxSegments)
-        throw FileError(path, "draft",
-                        fmt::format("a cell of at most {:.2g} cylinders (fewer fibres, a smaller "
-                                    "repeat, or a twist that closes sooner)",
-                                    kMaxSegments),
-                        fmt::format("{:.2g} for {} ends × {} picks", fewest, ends, picks));
-
     element.fibres.cell = {double(ends) * warp.spacing, double(picks) * weft.spacing};
+    element.thickness_um = 2 * std::max(warp.greatest_height(), weft.greatest_height());
+    check_memory(fewest_segments(warp, weft, options) + fewest_segments(weft, warp, options),
+                 "at least ", element, cloth, ends, picks);
     std::vector<WoundYarn> yarns(ends + picks);
     parallel_for(yarns.size(), [&](size_t k) {
         yarns[k] = k < ends ? wind_yarn(warp, {0, 1, 0}, k, k, options)
@@ -190,11 +200,12 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
     }
     element.thinned /= volume;
 
+    for (const kernel::FibreChain& chain : element.fibres.chains)
+        element.segments += chain.points.size();
+    check_memory(double(element.segments), "", element, cloth, ends, picks);
     const std::vector<kernel::FibreSegment> segments = kernel::fibre_segments(element.fibres);
-    element.segments = segments.size();
     element.overlap_fraction = overlap_fraction(element.fibres, segments);
     element.mass_g_per_m2 = mass_of(element.fibres, segments, cloth);
-    element.thickness_um = 2 * std::max(warp.greatest_height(), weft.greatest_height());
     element.warp_cover = 2 * warp.mean_half_width() / warp.spacing;
     element.weft_cover = 2 * weft.mean_half_width() / weft.spacing;
     element.cover_factor =
