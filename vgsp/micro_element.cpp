@@ -170,12 +170,14 @@ std::optional<double> mass_of(const kernel::FibreAssembly& assembly,
 MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& options) {
     if (!(options.max_turn_degrees > 0))
         throw std::invalid_argument("max_turn_degrees is not positive");
+    if (options.least_repeats < 1)
+        throw std::invalid_argument("a cell of no repeat");
     const std::string path = cloth.path.string();
     if (!(cloth.crimp_balance >= 0 && cloth.crimp_balance <= 1))
         throw FileError(path, "crimp_balance", "a number from 0 to 1",
                         fmt::format("{:g}", cloth.crimp_balance));
     const Draft draft = weavable(cloth.draft, path);
-    const YarnSystems systems = lay_systems(cloth, draft);
+    const YarnSystems systems = lay_systems(cloth, draft, options.least_repeats);
     const YarnSystem &warp = systems.warp, &weft = systems.weft;
 
     MicroElement element;

@@ -32,6 +32,9 @@ struct MicroElementOptions {
     double max_turn_degrees = 1; ///< largest turn of a fibre between two segments
     bool dither = true;          ///< shift each fibre's joints along it at random
     uint64_t seed = 0;
+    /// Repeats of the draft along both yarns that the cell has at least: the paper's extended
+    /// micro-element. The longer the cell, the less twist is rounded to close.
+    int least_repeats = 1;
 };
 
 /// Builds the micro-element (the paper, section 3). FileError (at the cloth's path) where the

@@ -157,6 +157,26 @@ void segments() {
         }
 }
 
+/// How far cells of so many repeats scatter from a very long one; what their twist is rounded by
+/// goes to standard error.
+void sides() {
+    const std::vector<IncidentDirection> incident{kIncident};
+    for (const double off : {0.0, 0.0199}) {
+        const Cloth cloth = tests::twisted_cloth(2, off);
+        const auto measured = [&](int repeats) {
+            const MicroElement element = build_micro_element(cloth, {.least_repeats = repeats});
+            std::fprintf(stderr, "%d repeats: twist rounded by %+.4f\n", repeats,
+                         element.twist_rounding_warp);
+            return tests::measured(kernel::FibreTracer(element.fibres), tests::clear_fibres(),
+                                   incident, 4 * kPaths, static_cast<uint64_t>(repeats));
+        };
+        const BsdfTable limit = measured(26);
+        for (const int repeats : {1, 2, 4, 8, 16, 25})
+            row("sides", off == 0 ? "twist that closes in a repeat" : "twist 2 % from closing",
+                repeats, tests::departure(measured(repeats), 0, limit, 0), 0);
+    }
+}
+
 /// The scans of tests/statistical/highlights_test.cpp; "measured" rows tell angles only.
 void highlights() {
     for (const auto& [file, measured] : {std::pair("silk-charmeuse", &tests::kSatinCharmeuse),
@@ -183,10 +203,11 @@ void highlights() {
 
 int main(int argc, char** argv) {
     constexpr std::pair<std::string_view, void (*)()> kSweeps[]{
-        {"incidence", rapport::incidence}, {"overlap", rapport::overlap},
-        {"twist", rapport::twist},         {"cell", rapport::cell},
-        {"scale", rapport::scale},         {"optics", rapport::optics},
-        {"segments", rapport::segments},   {"highlights", rapport::highlights}};
+        {"incidence", rapport::incidence},  {"overlap", rapport::overlap},
+        {"twist", rapport::twist},          {"cell", rapport::cell},
+        {"scale", rapport::scale},          {"optics", rapport::optics},
+        {"segments", rapport::segments},    {"sides", rapport::sides},
+        {"highlights", rapport::highlights}};
     std::puts("sweep,curve,parameter,value,error");
     for (const auto& [name, sweep] : kSweeps)
         if (argc == 1 || std::find(argv + 1, argv + argc, name) != argv + argc)

@@ -35,6 +35,8 @@ CHARTS = {
               "angle of exit [°], positive towards the light", "density [1/rad]", "linear", "linear"),
     "segments": ("Straight segments against the smooth fibre", "segments to a fibre of the repeat",
                  "RMS difference over the mean", "log", "log"),
+    "sides": ("Extended cells", "repeats of the draft along both yarns",
+              "RMS difference over the mean, without noise", "log", "linear"),
     "highlights": ("Light along the normal (shaded: highlights as measured)",
                    "angle of exit along the warp [°]", "intensity [1/sr]", "linear", "log"),
 }
