@@ -95,6 +95,36 @@ void separate(std::vector<FibreSite>& sites, const SectionLayout& section, doubl
     }
 }
 
+/// Makes fibres thinner that are still nearer than `clearance` times their radii, or reach out of
+/// `room`: those that separate() found no place for.
+void thin_out(std::vector<FibreSite>& sites, const SectionLayout& section, double clearance,
+              SectionOutline room) {
+    const std::vector<Copy> copies = all_copies(sites, section);
+    std::vector<double> share(sites.size(), 1);
+    for (size_t i = 0; i < sites.size(); ++i) {
+        const dvec2& p = sites[i].position;
+        const double reach = length(p / dvec2(room.half_width, room.half_height));
+        if (reach > 0 && reach < 1) // what is left on the way out from the centre
+            share[i] =
+                std::min(1.0, length(p) * (1 / reach - 1) / (section.clearance * sites[i].radius));
+    }
+    for (size_t c = 0; c < copies.size(); ++c)
+        for (size_t d = 0; d < c; ++d) {
+            if (copies[c].ply != copies[d].ply)
+                continue;
+            const FibreSite &a = sites[copies[c].site], &b = sites[copies[d].site];
+            const double room =
+                distance(turned(a.position, copies[c].angle), turned(b.position, copies[d].angle)) /
+                (clearance * (a.radius + b.radius));
+            share[copies[c].site] = std::min(share[copies[c].site], room);
+            share[copies[d].site] = std::min(share[copies[d].site], room);
+        }
+    for (size_t i = 0; i < sites.size(); ++i) {
+        sites[i].radius *= share[i];
+        sites[i].thinned = 1 - square(share[i]);
+    }
+}
+
 /// Whether the fibre lies at the yarn's surface: within a fibre diameter of its outline.
 bool at_the_surface(const FibreSite& site, const SectionLayout& section) {
     const dvec2 p = section.plies == 1 ? site.position : dvec2(0, section.ply_ring) + site.position;
@@ -149,8 +179,8 @@ void scatter_fibres(std::vector<FibreSite>& sites, const SectionLayout& section,
     const double margin = kMargin * irregularity.migration_um;
     const double attainable =
         std::max(section.clearance, section.spacing / (2 * section.fibre_radius));
-    const double clearance =
-        std::min(section.clearance * (1 + margin / migration_width(section.outline)), attainable);
+    const double wanted = section.clearance * (1 + margin / migration_width(section.outline));
+    const double clearance = std::min(wanted, attainable);
     // Give way inwards, but leave neighbours the room that their migration needs.
     double reach = 0;
     for (const FibreSite& site : sites)
@@ -162,6 +192,9 @@ void scatter_fibres(std::vector<FibreSite>& sites, const SectionLayout& section,
         for (FibreSite& site : sites)
             site.position *= 1 - given_way / reach;
 
+    const SectionOutline room{section.inner.half_width - given_way,
+                              section.inner.half_height - given_way};
+
     const double variation = yarn.fibre.diameter_variation;
     if (variation > 0 || irregularity.spacing_jitter_um > 0) {
         for (FibreSite& site : sites) {
@@ -169,11 +202,11 @@ void scatter_fibres(std::vector<FibreSite>& sites, const SectionLayout& section,
             if (!is_core(site, section))
                 site.position += irregularity.spacing_jitter_um * normal_pair(rng);
         }
-        const SectionOutline room{section.inner.half_width - given_way,
-                                  section.inner.half_height - given_way};
         separate(sites, section, clearance, room);
         separate(sites, section, section.clearance, room); // the last word, if there is no room
     }
+    if (variation > 0 || irregularity.spacing_jitter_um > 0 || margin > 0)
+        thin_out(sites, section, wanted, room);
 
     if (irregularity.stray_fibres > 0)
         for (FibreSite& site : sites) {

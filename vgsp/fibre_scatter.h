@@ -24,6 +24,7 @@ struct FibreSite {
     };
     std::vector<Turn> turns; ///< at the start of each of the cells after which it closes
     StrayLoop loop;
+    double thinned = 0; ///< share of its section given up to keep clear of its neighbours
 };
 
 /// A displacement of fibres in their yarn's section that varies smoothly along the yarn and across
@@ -57,8 +58,10 @@ double migration_width(const SectionOutline& outline);
 
 /// Draws what is irregular about one yarn's fibres: diameters, places, and which of them stray.
 /// Then they are moved apart where they overlap and back where they left the yarn, as far as there
-/// is room; the packing gives way to the coming migration in the same manner. Changes nothing for a
-/// yarn without irregularity. `cell_length` is that of the axis [µm].
+/// is room; the packing gives way to the coming migration in the same manner. Fibres that are left
+/// without room are made thinner: they keep clear of the others of their single with two standard
+/// deviations of migration to spare. Changes nothing for a yarn without irregularity. `cell_length`
+/// is that of the axis [µm].
 void scatter_fibres(std::vector<FibreSite>& sites, const SectionLayout& section,
                     const YarnSpec& yarn, double cell_length, CounterRng& rng);
 

@@ -4,6 +4,7 @@
 #include "renderer/core/math.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/rng.h"
+#include "renderer/kernel/fibre_tracer.h"
 #include "vgsp/element_report.h"
 #include "vgsp/fibre_winding.h"
 #include "vgsp/weave.h"
@@ -17,7 +18,7 @@
 namespace rapport {
 namespace {
 
-constexpr double kMaxSegments = 1e7; ///< about 2 GB once they are ready to trace
+constexpr double kMostMemory = 4e9; ///< of the cell, once it is ready to trace [bytes]
 
 /// The fibres of a yarn, one for each chain. After one cell a fibre goes on as the one
 /// `packing_steps` places further round its single and `ply_steps` singles further round the yarn;
@@ -31,7 +32,7 @@ std::vector<FibreSite> fibre_sites(const SectionLayout& section, int packing_ste
         for (int start = 0; start < order * plies; ++start) {
             if (met[start])
                 continue;
-            FibreSite site{position, section.fibre_radius, {}, {}};
+            FibreSite site{position, section.fibre_radius, {}, {}, 0};
             int place = start % order, ply = start / order;
             while (!met[size_t(ply) * order + place]) {
                 met[size_t(ply) * order + place] = 1;
@@ -66,11 +67,15 @@ double smallest_bend(const PlacedYarn& yarn, const Irregularity& irregularity) {
     return bend;
 }
 
+struct WoundYarn {
+    std::vector<kernel::FibreChain> fibres;
+    double volume = 0, thinned = 0; ///< of the fibres as drawn, and what they gave up of it [µm³]
+};
+
 /// The fibres of yarn number `index` of the cell, which lies along `direction`; `random_index`
 /// tells its random numbers from those of all other yarns.
-std::vector<kernel::FibreChain> wind_yarn(const YarnSystem& system, const glm::dvec3& direction,
-                                          size_t index, size_t random_index,
-                                          const MicroElementOptions& options) {
+WoundYarn wind_yarn(const YarnSystem& system, const glm::dvec3& direction, size_t index,
+                    size_t random_index, const MicroElementOptions& options) {
     const YarnAxis& axis = system.axes[index % system.axes.size()];
     const SystemYarn& kind = system.yarn(index);
     const SectionLayout& section = kind.section;
@@ -98,18 +103,21 @@ std::vector<kernel::FibreChain> wind_yarn(const YarnSystem& system, const glm::d
                               std::min(16 * section.fibre_radius, system.spacing / 2)};
     const double sampling_step = std::min(
         2 * joints.max_turn * smallest_bend(yarn, kind.yarn->irregularity), cell_length / 8);
-    std::vector<kernel::FibreChain> chains;
+    WoundYarn wound;
     for (const FibreSite& site : sites) {
         const double cells = double(site.turns.size());
         const ClosedCurve curve{[&](double s) { return yarn.fibre_point(site, s); },
                                 cell_length * cells, sampling_step,
                                 axis.period() * system.repeats * cells * direction};
-        CounterRng dithered = random(Purpose::fibre_dither, chains.size());
+        CounterRng dithered = random(Purpose::fibre_dither, wound.fibres.size());
         const double dither = options.dither ? dithered.uniform() : 0;
-        chains.push_back(
+        wound.fibres.push_back(
             {place_joints(curve, joints, dither), curve.period, site.radius, kind.kind});
+        const double drawn = kPi * square(site.radius) / (1 - site.thinned) * curve.length;
+        wound.volume += drawn;
+        wound.thinned += site.thinned * drawn;
     }
-    return chains;
+    return wound;
 }
 
 /// About the least that the system needs of segments in the cell: what the turns of its axes and
@@ -125,6 +133,21 @@ double fewest_segments(const YarnSystem& system, const YarnSystem& crossed,
                 std::max(system.axes[i].turn(), wandering * system.axes[i].length());
     }
     return turn * system.repeats * crossed.repeats / radians(options.max_turn_degrees);
+}
+
+/// Refuses a cell that would take too much memory; `bound` says of which kind the number is.
+void check_memory(double segments, const char* bound, const MicroElement& element,
+                  const Cloth& cloth, size_t ends, size_t picks) {
+    const double memory =
+        kernel::FibreTracer::memory(segments, element.fibres.cell, element.thickness_um) +
+        segments * sizeof(glm::dvec3);
+    if (memory > kMostMemory)
+        throw FileError(cloth.path.string(), "draft",
+                        fmt::format("a cell that takes at most {:.2g} GB (fewer fibres, a smaller "
+                                    "repeat, or a twist that closes sooner)",
+                                    kMostMemory * 1e-9),
+                        fmt::format("{} ends × {} picks of {}{:.2g} cylinders, {:.2g} GB", ends,
+                                    picks, bound, segments, memory * 1e-9));
 }
 
 std::optional<double> mass_of(const kernel::FibreAssembly& assembly,
@@ -147,12 +170,14 @@ std::optional<double> mass_of(const kernel::FibreAssembly& assembly,
 MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& options) {
     if (!(options.max_turn_degrees > 0))
         throw std::invalid_argument("max_turn_degrees is not positive");
+    if (options.least_repeats < 1)
+        throw std::invalid_argument("a cell of no repeat");
     const std::string path = cloth.path.string();
     if (!(cloth.crimp_balance >= 0 && cloth.crimp_balance <= 1))
         throw FileError(path, "crimp_balance", "a number from 0 to 1",
                         fmt::format("{:g}", cloth.crimp_balance));
     const Draft draft = weavable(cloth.draft, path);
-    const YarnSystems systems = lay_systems(cloth, draft);
+    const YarnSystems systems = lay_systems(cloth, draft, options.least_repeats);
     const YarnSystem &warp = systems.warp, &weft = systems.weft;
 
     MicroElement element;
@@ -160,29 +185,29 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
     element.repeats_y = warp.repeats;
     const size_t ends = size_t(draft.ends) * weft.repeats;
     const size_t picks = size_t(draft.picks) * warp.repeats;
-    const double fewest =
-        fewest_segments(warp, weft, options) + fewest_segments(weft, warp, options);
-    if (fewest > kMaxSegments)
-        throw FileError(path, "draft",
-                        fmt::format("a cell of at most {:.2g} cylinders (fewer fibres, a smaller "
-                                    "repeat, or a twist that closes sooner)",
-                                    kMaxSegments),
-                        fmt::format("{:.2g} for {} ends × {} picks", fewest, ends, picks));
-
     element.fibres.cell = {double(ends) * warp.spacing, double(picks) * weft.spacing};
-    std::vector<std::vector<kernel::FibreChain>> yarns(ends + picks);
+    element.thickness_um = 2 * std::max(warp.greatest_height(), weft.greatest_height());
+    check_memory(fewest_segments(warp, weft, options) + fewest_segments(weft, warp, options),
+                 "at least ", element, cloth, ends, picks);
+    std::vector<WoundYarn> yarns(ends + picks);
     parallel_for(yarns.size(), [&](size_t k) {
         yarns[k] = k < ends ? wind_yarn(warp, {0, 1, 0}, k, k, options)
                             : wind_yarn(weft, {1, 0, 0}, k - ends, k, options);
     });
-    for (std::vector<kernel::FibreChain>& yarn : yarns)
-        std::move(yarn.begin(), yarn.end(), std::back_inserter(element.fibres.chains));
+    double volume = 0;
+    for (WoundYarn& yarn : yarns) {
+        std::ranges::move(yarn.fibres, std::back_inserter(element.fibres.chains));
+        volume += yarn.volume;
+        element.thinned += yarn.thinned;
+    }
+    element.thinned /= volume;
 
+    for (const kernel::FibreChain& chain : element.fibres.chains)
+        element.segments += chain.points.size();
+    check_memory(double(element.segments), "", element, cloth, ends, picks);
     const std::vector<kernel::FibreSegment> segments = kernel::fibre_segments(element.fibres);
-    element.segments = segments.size();
     element.overlap_fraction = overlap_fraction(element.fibres, segments);
     element.mass_g_per_m2 = mass_of(element.fibres, segments, cloth);
-    element.thickness_um = 2 * std::max(warp.greatest_height(), weft.greatest_height());
     element.warp_cover = 2 * warp.mean_half_width() / warp.spacing;
     element.weft_cover = 2 * weft.mean_half_width() / weft.spacing;
     element.cover_factor =

@@ -20,6 +20,7 @@ struct MicroElement {
     double warp_cover = 0, weft_cover = 0; ///< shares of area that the yarns' outlines cover
     double cover_factor = 0;               ///< of both together
     double overlap_fraction = 0; ///< share of sampled fibre surface that lies inside another fibre
+    double thinned = 0;          ///< share of the fibres' volume given up so that they keep clear
     double twist_rounding_warp = 0, twist_rounding_weft = 0; ///< relative; the largest of all yarns
     /// Of the fibres, from their lengths and densities; nothing where a density is not known.
     std::optional<double> mass_g_per_m2;
@@ -31,6 +32,9 @@ struct MicroElementOptions {
     double max_turn_degrees = 1; ///< largest turn of a fibre between two segments
     bool dither = true;          ///< shift each fibre's joints along it at random
     uint64_t seed = 0;
+    /// Repeats of the draft along both yarns that the cell has at least: the paper's extended
+    /// micro-element. The longer the cell, the less twist is rounded to close.
+    int least_repeats = 1;
 };
 
 /// Builds the micro-element (the paper, section 3). FileError (at the cloth's path) where the

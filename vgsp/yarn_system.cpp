@@ -164,8 +164,8 @@ double rounding_of(double turns_per_repeat, int repeats) {
     return turns == 0 ? 0 : std::round(turns) / turns - 1;
 }
 
-/// The fewest repeats of the draft after which every yarn's twists, changed by at most 2 %, have
-/// turned the packing onto itself.
+/// The fewest repeats of the draft, from system.repeats on, after which every yarn's twists,
+/// changed by at most 2 %, have turned the packing onto itself.
 void close_twist(YarnSystem& system, const Cloth& cloth) {
     const SystemYarn* worst = &system.kinds[0];
     const auto rounding = [&] {
@@ -228,7 +228,7 @@ SymmetryTurns symmetry_turns(const SystemYarn& yarn, const YarnAxis& axis) {
             spec.ply_twist_per_m * 1e-6 * axis.length() * spec.plies};
 }
 
-YarnSystems lay_systems(const Cloth& cloth, const Draft& draft) {
+YarnSystems lay_systems(const Cloth& cloth, const Draft& draft, int least_repeats) {
     YarnSystem warp =
         make_system(cloth, "warp", "ends_per_cm", cloth.ends_per_cm, draft.warp_yarns, draft.ends);
     YarnSystem weft = make_system(cloth, "weft", "picks_per_cm", cloth.picks_per_cm,
@@ -239,6 +239,7 @@ YarnSystems lay_systems(const Cloth& cloth, const Draft& draft) {
     share_crimp(cloth, warp, weft);
     lay_axes(warp, weft, cloth);
     lay_axes(weft, warp, cloth);
+    warp.repeats = weft.repeats = least_repeats;
     close_twist(warp, cloth);
     close_twist(weft, cloth);
     return {std::move(warp), std::move(weft)};

@@ -45,8 +45,9 @@ struct YarnSystems {
 /// the crimp heights share out the thickness of warp and weft as crimp_balance says, as far as that
 /// leaves none negative; a yarn thicker than its system's mean has so much more, so that unequal
 /// yarns touch at every crossing. Throws FileErrors at the cloth's path: yarns too thick for the
-/// sett, fibres that do not fit their yarn, a twist that does not close.
-YarnSystems lay_systems(const Cloth& cloth, const Draft& draft);
+/// sett, fibres that do not fit their yarn, a twist that does not close. The systems have at least
+/// `least_repeats` of the draft.
+YarnSystems lay_systems(const Cloth& cloth, const Draft& draft, int least_repeats = 1);
 
 /// Turns per repeat of the draft, along a yarn's axis, of the symmetry of its section's packing
 /// and, if it is plied, of its ring of singles. 0 for what does not turn.

@@ -112,7 +112,8 @@ Info cloth_info(const std::filesystem::path& path) {
                                   {"crimp_weft", element.crimp_weft},
                                   {"twist_rounding_warp", element.twist_rounding_warp},
                                   {"twist_rounding_weft", element.twist_rounding_weft},
-                                  {"overlap_fraction", element.overlap_fraction}};
+                                  {"overlap_fraction", element.overlap_fraction},
+                                  {"thinned", element.thinned}};
     if (element.mass_g_per_m2)
         info.json["micro_element"]["mass_g_per_m2"] = *element.mass_g_per_m2;
 
@@ -131,6 +132,10 @@ Info cloth_info(const std::filesystem::path& path) {
                    element.fibres.cell.x, element.fibres.cell.y, element.thickness_um,
                    element.fibres.chains.size(), element.segments, element.cover_factor,
                    100 * element.overlap_fraction);
+    if (element.thinned > 0)
+        fmt::format_to(std::back_inserter(info.text),
+                       "fibres thinned by {:.2f} % of their volume to keep clear of each other\n",
+                       100 * element.thinned);
     if (element.mass_g_per_m2)
         fmt::format_to(std::back_inserter(info.text), "mass: {:.0f} g/m²\n",
                        *element.mass_g_per_m2);

@@ -25,6 +25,18 @@ std::pair<double, double> shifts_into(double from, double to, double low, double
 
 constexpr uint32_t kNoCopy = ~0u;
 
+/// Half the thickness, the fastest in measurements on cells narrower and wider than the cloth is
+/// thick: a wider block makes rays wrap less, and the hierarchy larger. Less than that where the
+/// block would repeat a thick and narrow cell too often.
+double choose_margin(double segments, const glm::dvec2& cell, double thickness) {
+    constexpr double kMostCopies = 1 << 18;
+    const double most = std::max(4.0, kMostCopies / segments);
+    double margin = 0.5 * thickness;
+    while ((cell.x + 2 * margin) * (cell.y + 2 * margin) > most * cell.x * cell.y)
+        margin /= 2;
+    return margin;
+}
+
 } // namespace
 
 /// What the callback reads of one copy of a segment: one cache line.
@@ -133,11 +145,16 @@ struct Callbacks {
     }
 };
 
-FibreBlock::FibreBlock(FibreAssembly assembly)
-    : assembly_(std::move(assembly)), segments_(fibre_segments(assembly_)),
+FibreBlock::FibreBlock(const FibreAssembly& assembly)
+    : cell_(assembly.cell), segments_(fibre_segments(assembly)),
       embree_(std::make_unique<Embree>()) {
     if (segments_.empty())
         throw std::invalid_argument("an assembly without fibres");
+    for (const FibreChain& chain : assembly.chains) {
+        periods_.push_back(chain.period);
+        chain_period_.push_back(
+            to_shift(std::round(chain.period.x / cell_.x), std::round(chain.period.y / cell_.y)));
+    }
     measure_extent();
     fill();
     const RTCDevice device = embree_->device.get();
@@ -162,45 +179,47 @@ void FibreBlock::measure_extent() {
         z_min_ = std::min(z_min_, low.z);
         z_max_ = std::max(z_max_, high.z);
     }
-    for (const FibreChain& chain : assembly_.chains)
-        chain_period_.push_back(
-            to_shift(std::round(chain.period.x / cell().x), std::round(chain.period.y / cell().y)));
-    margin_ = choose_margin();
+    margin_ = choose_margin(static_cast<double>(segments_.size()), cell_, z_max_ - z_min_);
     tolerance_ = 4e-7 * std::max({cell().x + margin_, cell().y + margin_, std::abs(z_min_),
                                   std::abs(z_max_)});
 }
 
-/// Half the thickness, the fastest in measurements on cells narrower and wider than the cloth is
-/// thick: a wider block makes rays wrap less, and the hierarchy larger. Less than that where the
-/// block would repeat a thick and narrow cell too often.
-double FibreBlock::choose_margin() const {
-    constexpr double kMostCopies = 1 << 18;
-    const double most = std::max(4.0, kMostCopies / static_cast<double>(segments_.size()));
-    double margin = 0.5 * (z_max_ - z_min_);
-    while ((cell().x + 2 * margin) * (cell().y + 2 * margin) > most * cell().x * cell().y)
-        margin /= 2;
-    return margin;
-}
-
-void FibreBlock::fill() {
+template <class Visit> void FibreBlock::each_copy(Visit visit) const {
     const glm::dvec2 from(-margin_), to = cell() + margin_;
     for (uint32_t s = 0; s < segments_.size(); ++s) {
-        const FibreSegment& segment = segments_[s];
-        const auto [low, high] = bounds(segment);
+        const auto [low, high] = bounds(segments_[s]);
         const auto [x_from, x_to] = shifts_into(from.x, to.x, low.x, high.x, cell().x);
         const auto [y_from, y_to] = shifts_into(from.y, to.y, low.y, high.y, cell().y);
         if (std::max({-x_from, x_to, -y_from, y_to}) >= kLargestShift)
             throw std::invalid_argument("a fibre strays too many cells from the base cell");
         for (double y = y_from; y <= y_to; ++y)
-            for (double x = x_from; x <= x_to; ++x) {
-                const Shift shift = to_shift(x, y);
-                copies_.push_back(
-                    {glm::vec3(segment.start + offset(shift)),
-                     static_cast<float>(square(segment.radius)), glm::vec3(segment.direction),
-                     static_cast<float>(segment.end_offset), glm::vec3(segment.start_normal), s,
-                     glm::vec3(segment.end_normal), shift});
-            }
+            for (double x = x_from; x <= x_to; ++x)
+                visit(s, to_shift(x, y));
     }
+}
+
+void FibreBlock::fill() {
+    size_t count = 0;
+    each_copy([&](uint32_t, Shift) { ++count; });
+    copies_.reserve(count); // exactly: they are most of the memory
+    each_copy([&](uint32_t s, Shift shift) {
+        const FibreSegment& segment = segments_[s];
+        copies_.push_back({glm::vec3(segment.start + offset(shift)),
+                           static_cast<float>(square(segment.radius)), glm::vec3(segment.direction),
+                           static_cast<float>(segment.end_offset), glm::vec3(segment.start_normal),
+                           s, glm::vec3(segment.end_normal), shift});
+    });
+}
+
+double FibreBlock::memory(double segments, const glm::dvec2& cell, double thickness) {
+    // Embree's hierarchy, and what building it takes beside, measured per copy.
+    constexpr double kHierarchy = 85, kBuilding = 55;
+    // Longer than the block is wide, segments reach into it from further away.
+    constexpr double kReachingIn = 1.1;
+    const double margin = choose_margin(segments, cell, thickness);
+    const double copies =
+        segments * kReachingIn * (1 + 2 * margin / cell.x) * (1 + 2 * margin / cell.y);
+    return segments * sizeof(FibreSegment) + copies * (sizeof(Copy) + kHierarchy + kBuilding);
 }
 
 /// Copies of one fibre differ by a whole number of its own periods.

@@ -22,8 +22,11 @@ struct Shift {
 /// precision, so that neighbouring fibres may touch.
 class FibreBlock {
   public:
-    explicit FibreBlock(FibreAssembly assembly);
+    explicit FibreBlock(const FibreAssembly& assembly);
     ~FibreBlock();
+
+    /// What a block takes while it is made, at most [bytes].
+    static double memory(double segments, const glm::dvec2& cell, double thickness);
 
     struct Ray {
         glm::dvec3 origin, direction; ///< origin in the base cell, above or below it
@@ -45,12 +48,10 @@ class FibreBlock {
     double distance_to_side(const glm::dvec3& origin, const glm::dvec3& direction) const;
 
     glm::dvec3 offset(Shift shift) const { return {shift.x * cell().x, shift.y * cell().y, 0}; }
-    const glm::dvec2& cell() const { return assembly_.cell; }
+    const glm::dvec2& cell() const { return cell_; }
     const std::vector<FibreSegment>& segments() const { return segments_; }
     /// Along the chain of `segment`.
-    const glm::dvec3& period(const FibreSegment& segment) const {
-        return assembly_.chains[segment.chain].period;
-    }
+    const glm::dvec3& period(const FibreSegment& segment) const { return periods_[segment.chain]; }
     double z_min() const { return z_min_; }
     double z_max() const { return z_max_; }
     /// Bound on single precision's error of a length within the block.
@@ -62,13 +63,14 @@ class FibreBlock {
     friend struct Callbacks;
 
     void measure_extent();
-    double choose_margin() const;
+    template <class Visit> void each_copy(Visit visit) const;
     void fill();
     bool same_fibre(uint32_t segment_a, Shift a, uint32_t segment_b, Shift b) const;
 
-    FibreAssembly assembly_;
+    glm::dvec2 cell_;
     std::vector<FibreSegment> segments_;
-    std::vector<Shift> chain_period_; ///< in cells
+    std::vector<glm::dvec3> periods_; ///< of the chains
+    std::vector<Shift> chain_period_; ///< the same in cells
     std::vector<Copy> copies_;
     double margin_ = 0;
     double z_min_ = 0, z_max_ = 0;

@@ -109,10 +109,14 @@ FibrePoint FibreTracer::Implementation::leave(glm::dvec3 origin, const glm::dvec
     }
 }
 
-FibreTracer::FibreTracer(FibreAssembly assembly)
-    : implementation_(new Implementation{FibreBlock(std::move(assembly))}) {}
+FibreTracer::FibreTracer(const FibreAssembly& assembly)
+    : implementation_(new Implementation{FibreBlock(assembly)}) {}
 FibreTracer::~FibreTracer() = default;
 FibreTracer::FibreTracer(FibreTracer&&) noexcept = default;
+
+double FibreTracer::memory(double segments, const glm::dvec2& cell, double thickness) {
+    return FibreBlock::memory(segments, cell, thickness);
+}
 
 FibreTracer::Entry FibreTracer::enter(const glm::dvec3& origin, const glm::dvec3& direction,
                                       uint32_t leaving) const {

@@ -22,9 +22,13 @@ struct FibrePoint {
 class FibreTracer {
   public:
     /// Throws std::invalid_argument as fibre_segments does, and for an assembly without fibres.
-    explicit FibreTracer(FibreAssembly assembly);
+    explicit FibreTracer(const FibreAssembly& assembly);
     ~FibreTracer();
     FibreTracer(FibreTracer&&) noexcept;
+
+    /// The memory that a tracer takes while it is made, at most [bytes], for so many segments in a
+    /// cell and thickness of the same unit.
+    static double memory(double segments, const glm::dvec2& cell, double thickness);
 
     /// What becomes of a ray that travels outside all fibres.
     enum class Flight : uint8_t {

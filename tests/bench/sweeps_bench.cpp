@@ -1,5 +1,7 @@
 #include "vgsp/micro_element.h"
+#include "vgsp/plane_scan.h"
 
+#include "tests/support/highlights.h"
 #include "tests/support/mirror_images.h"
 #include "tests/support/stability.h"
 #include "tests/support/union_of_disks.h"
@@ -9,7 +11,9 @@
 // The sweeps of tests/stability as numbers for charts: lines of sweep, curve, parameter, value and
 // its standard error. charts/sweeps.py draws them:
 //
-//   build/tests/sweeps_bench | python3 tests/bench/charts/sweeps.py
+//   build/tests/tests/sweeps_bench | python3 tests/bench/charts/sweeps.py
+//
+// or those of the functions below that are named after it.
 
 namespace rapport {
 namespace {
@@ -153,16 +157,59 @@ void segments() {
         }
 }
 
+/// How far cells of so many repeats scatter from a very long one; what their twist is rounded by
+/// goes to standard error.
+void sides() {
+    const std::vector<IncidentDirection> incident{kIncident};
+    for (const double off : {0.0, 0.0199}) {
+        const Cloth cloth = tests::twisted_cloth(2, off);
+        const auto measured = [&](int repeats) {
+            const MicroElement element = build_micro_element(cloth, {.least_repeats = repeats});
+            std::fprintf(stderr, "%d repeats: twist rounded by %+.4f\n", repeats,
+                         element.twist_rounding_warp);
+            return tests::measured(kernel::FibreTracer(element.fibres), tests::clear_fibres(),
+                                   incident, 4 * kPaths, static_cast<uint64_t>(repeats));
+        };
+        const BsdfTable limit = measured(26);
+        for (const int repeats : {1, 2, 4, 8, 16, 25})
+            row("sides", off == 0 ? "twist that closes in a repeat" : "twist 2 % from closing",
+                repeats, tests::departure(measured(repeats), 0, limit, 0), 0);
+    }
+}
+
+/// The scans of tests/statistical/highlights_test.cpp; "measured" rows tell angles only.
+void highlights() {
+    for (const auto& [file, measured] : {std::pair("silk-charmeuse", &tests::kSatinCharmeuse),
+                                         {"silk-crepe-de-chine", &tests::kCrepeDeChine},
+                                         {"linen", &tests::kLinen}}) {
+        const Cloth cloth =
+            read_cloth(std::string(RAPPORT_SOURCE_DIR "/scenes/cloths/") + file + ".toml");
+        const PlaneScan scan = tests::mirror_scan(cloth, kPi / 2, 8'000'000);
+        const std::vector<double> intensity = tests::smoothed(scan);
+        for (int bin = 0; bin < PlaneScan::kAngles; ++bin)
+            row("highlights", cloth.name.c_str(), degrees(PlaneScan::angle(bin)), intensity[bin],
+                scan.mean_error[bin]);
+        if (measured == &tests::kLinen)
+            continue; // it has none
+        for (const double inclination : measured->inclinations)
+            for (const double side : {-1, 1})
+                row("highlights", ("measured: " + std::string(measured->name)).c_str(),
+                    side * measured->exit(inclination), 0, measured->narrowest());
+    }
+}
+
 } // namespace
 } // namespace rapport
 
-int main() {
+int main(int argc, char** argv) {
+    constexpr std::pair<std::string_view, void (*)()> kSweeps[]{
+        {"incidence", rapport::incidence},  {"overlap", rapport::overlap},
+        {"twist", rapport::twist},          {"cell", rapport::cell},
+        {"scale", rapport::scale},          {"optics", rapport::optics},
+        {"segments", rapport::segments},    {"sides", rapport::sides},
+        {"highlights", rapport::highlights}};
     std::puts("sweep,curve,parameter,value,error");
-    rapport::incidence();
-    rapport::overlap();
-    rapport::twist();
-    rapport::cell();
-    rapport::scale();
-    rapport::optics();
-    rapport::segments();
+    for (const auto& [name, sweep] : kSweeps)
+        if (argc == 1 || std::find(argv + 1, argv + argc, name) != argv + argc)
+            sweep();
 }

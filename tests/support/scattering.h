@@ -34,6 +34,17 @@ inline Cloth cloth_of(const Draft& draft, const YarnSpec& warp, const YarnSpec& 
     return cloth;
 }
 
+/// A plain weave of loose twisted yarns whose packing turns onto itself `steps` times in a repeat
+/// and, in share of the twist, `off` besides.
+inline Cloth twisted_cloth(int steps, double off = 0) {
+    YarnSpec yarn = loose_yarn(90, 14);
+    yarn.section = YarnSection::twisted;
+    Cloth cloth = cloth_of(named_weave("plain"), yarn, yarn, 45, 45);
+    const double length = 2 * 1e4 / 45 * (1 + build_micro_element(cloth).crimp_warp);
+    cloth.warp.twist_per_m = cloth.weft.twist_per_m = 1e6 * steps * (1 + off) / (6 * length);
+    return cloth;
+}
+
 /// Fibres of two kinds, both clear.
 inline std::vector<FibreOptics> clear_fibres(double index = 1.53, size_t bands = 3) {
     const FibreOptics clear{index, std::vector<double>(bands, 0.0), 0};
@@ -95,6 +106,24 @@ inline ChiSquareResult same_scattering(const BsdfTable& a, size_t direction_a, c
     --result.degrees; // both have the same total
     result.p_value = upper_gamma(0.5 * result.degrees, 0.5 * result.statistic);
     return result;
+}
+
+/// How far apart two incident directions scatter among clear fibres: the RMS difference of their
+/// intensity over its mean, with what noise adds to it taken off; 0 where that is more.
+inline double departure(const BsdfTable& a, size_t direction_a, const BsdfTable& b,
+                        size_t direction_b) {
+    double squares = 0, flux = 0;
+    for (int block = 0; block < 2; ++block)
+        for (size_t bin = 0; bin < a.exits.bins(); ++bin) {
+            const double x = a.at(direction_a, block, bin, 0), y = b.at(direction_b, block, bin, 0);
+            const double omega = a.exits.solid_angle(bin);
+            // A path more or less in a bin is 1/(N·Ω) of intensity.
+            const double noise = x / static_cast<double>(a.paths[direction_a]) +
+                                 y / static_cast<double>(b.paths[direction_b]);
+            squares += omega * square(x - y) - noise;
+            flux += 0.5 * omega * (x + y);
+        }
+    return std::sqrt(std::max(0.0, squares) / (4 * kPi)) / (flux / (4 * kPi));
 }
 
 } // namespace rapport::tests

@@ -158,11 +158,15 @@ TEST(Irregularity, KeepsFibresApartWhereThereIsRoom) {
         yarn->fibre.diameter_variation = 0.1;
         yarn->irregularity = {.migration_um = 1.5, .deviation_degrees = 2, .spacing_jitter_um = 2};
     }
-    EXPECT_LT(build_micro_element(cloth).overlap_fraction, 0.02);
-    // Where there is none, what is left is counted.
+    const MicroElement roomy = build_micro_element(cloth);
+    EXPECT_LT(roomy.overlap_fraction, 0.005);
+    EXPECT_LT(roomy.thinned, 0.005);
+    // Where there is none, they become thinner.
     for (YarnSpec* yarn : {&cloth.warp, &cloth.weft})
         yarn->fibre.diameter_um = 17, yarn->fibre.diameter_variation = 0.2;
-    EXPECT_GT(build_micro_element(cloth).overlap_fraction, 0.02);
+    const MicroElement dense = build_micro_element(cloth);
+    EXPECT_LT(dense.overlap_fraction, 0.005);
+    EXPECT_GT(dense.thinned, 0.02);
 }
 
 TEST(Irregularity, StrayFibresRiseOverTheOthersOnly) {

@@ -35,6 +35,10 @@ CHARTS = {
               "angle of exit [°], positive towards the light", "density [1/rad]", "linear", "linear"),
     "segments": ("Straight segments against the smooth fibre", "segments to a fibre of the repeat",
                  "RMS difference over the mean", "log", "log"),
+    "sides": ("Extended cells", "repeats of the draft along both yarns",
+              "RMS difference over the mean, without noise", "log", "linear"),
+    "highlights": ("Light along the normal (shaded: highlights as measured)",
+                   "angle of exit along the warp [°]", "intensity [1/sr]", "linear", "log"),
 }
 
 
@@ -48,7 +52,11 @@ def main():
         figure, axes = plt.subplots(figsize=(5, 3.2), layout="constrained")
         for name, points in named.items():
             x, y, error = zip(*points)
-            if sweep == "peaks":
+            if name.startswith("measured: "):
+                colour = axes.lines[-1].get_color()  # of the cloth that was drawn just before
+                for angle, width in zip(x, error):
+                    axes.axvspan(angle - width, angle + width, color=colour, alpha=0.15)
+            elif sweep in ("peaks", "highlights"):
                 axes.plot(x, y, drawstyle="steps-mid", linewidth=1, label=name)
             else:
                 axes.errorbar(x, y, yerr=error, marker=".", linewidth=1, capsize=2, label=name)
