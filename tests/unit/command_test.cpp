@@ -158,9 +158,9 @@ TEST_F(Command, MeasuresTellsAndExportsATable) {
 
 TEST_F(Command, RendersTheSamePixelsWithAnyThreadsAndDiffTellsThemApart) {
     const std::string scene = file("scene.pbrt", R"(
+        LookAt 0 0 3  0 0 0  0 1 0
         Camera "perspective" "float fov" 60
         Film "rgb" "integer xresolution" 32 "integer yresolution" 24
-        LookAt 0 0 3  0 0 0  0 1 0
         WorldBegin
         LightSource "infinite" "rgb L" [1 1 1]
         Shape "trianglemesh" "point3 P" [-1 -1 0  1 -1 0  0 1 0] "integer indices" [0 1 2]
