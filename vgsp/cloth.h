@@ -58,6 +58,7 @@
 //   absorption_per_um    1/µm  0 or more               0         per band, or one for all bands
 //   color                      [0, 1)                  optional  per band, instead of absorption
 //   surface_absorption         [0, 1]                  0         see FibreSpec
+//   roughness                  [0, 1]                  0         see FibreSpec
 
 namespace rapport {
 
@@ -77,6 +78,10 @@ struct FibreSpec {
     std::optional<std::vector<double>> color;
     /// Share of the light that each passage or reflection at a fibre's surface takes, [0, 1].
     double surface_absorption = 0;
+    /// Of the surface: the width α of the Trowbridge–Reitz (GGX) distribution of its facets'
+    /// normals (fibre_boundary.h); half of the surface is tilted by more than arctan α. 0 = smooth,
+    /// and so is below 1e-6.
+    double roughness = 0;
 
     bool operator==(const FibreSpec&) const = default;
 };

@@ -12,13 +12,15 @@ std::vector<FibreMedium> fibre_media(std::span<const FibreOptics> optics, size_t
             throw std::invalid_argument("a fibre's refractive index is below 1");
         if (!(kind.surface_absorption >= 0 && kind.surface_absorption <= 1))
             throw std::invalid_argument("a fibre's surface absorption is outside [0, 1]");
+        if (!(kind.roughness >= 0 && kind.roughness <= 1))
+            throw std::invalid_argument("a fibre's roughness is outside [0, 1]");
         if (kind.absorption_per_um.size() != bands)
             throw std::invalid_argument("a fibre's absorption is not given once per band");
         for (const double absorption : kind.absorption_per_um)
             if (!(absorption >= 0) || !std::isfinite(absorption))
                 throw std::invalid_argument("a fibre's absorption is negative");
-        media.push_back(
-            {kind.refractive_index, -std::log1p(-kind.surface_absorption), kind.absorption_per_um});
+        media.push_back({kind.refractive_index, -std::log1p(-kind.surface_absorption),
+                         kind.absorption_per_um, kind.roughness});
     }
     for (const kernel::FibreSegment& segment : tracer.segments())
         if (segment.kind >= media.size())

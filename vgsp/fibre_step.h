@@ -1,10 +1,8 @@
 #pragma once
 
-#include "renderer/core/fresnel.h"
-#include "renderer/core/rng.h"
 #include "renderer/kernel/fibre_tracer.h"
+#include "vgsp/fibre_boundary.h"
 
-#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -15,6 +13,7 @@ struct FibreOptics {
     double refractive_index = 1.5;         ///< against air, at least 1; the same in all bands
     std::vector<double> absorption_per_um; ///< per band
     double surface_absorption = 0;         ///< share lost at each boundary event, [0, 1]
+    double roughness = 0;                  ///< of the surface, see meet_rough_boundary()
 };
 
 /// FibreOptics made ready for tracing: whatever dims light is an optical depth, so that the share
@@ -23,10 +22,12 @@ struct FibreMedium {
     double refractive_index;
     double surface_depth;                  ///< −ln(1 − surface absorption), infinite for 1
     std::vector<double> absorption_per_um; ///< per band
+    double roughness;
 };
 
 /// Throws std::invalid_argument for an index below 1, negative absorption, a surface absorption
-/// outside [0, 1], another number of bands than `bands`, or a fibre whose kind has no optics.
+/// or roughness outside [0, 1], another number of bands than `bands`, or a fibre whose kind has no
+/// optics.
 std::vector<FibreMedium> fibre_media(std::span<const FibreOptics> optics, size_t bands,
                                      const kernel::FibreTracer& tracer);
 
@@ -45,28 +46,6 @@ enum class FibreStep : uint8_t {
     leaves, ///< it left the cloth
     lost,   ///< it travels within the cloth without meeting a fibre (FibreTracer::Flight::lost)
 };
-
-/// What becomes of the direction of light at a smooth dielectric boundary; `choice`, uniform in
-/// [0, 1), decides between reflection and refraction by the Fresnel reflectance. `normal` is the
-/// fibre's, outward; `inside` tells from which side the light comes. Index 1 changes nothing.
-struct BoundaryEvent {
-    glm::dvec3 direction;
-    bool transmitted;
-};
-inline BoundaryEvent meet_boundary(const glm::dvec3& direction, const glm::dvec3& normal,
-                                   bool inside, double refractive_index, double choice) {
-    if (refractive_index == 1)
-        return {direction, true};
-    const double eta = inside ? refractive_index : 1 / refractive_index;
-    const glm::dvec3 facing = inside ? -normal : normal;
-    const double cos_incident = std::clamp(-glm::dot(direction, facing), 0.0, 1.0);
-    const FresnelResult fresnel = fresnel_dielectric(cos_incident, eta);
-    if (choice < fresnel.reflectance)
-        return {glm::normalize(direction + facing * (2 * cos_incident)), false};
-    return {
-        glm::normalize(direction * eta + facing * (eta * cos_incident - fresnel.cos_transmitted)),
-        true};
-}
 
 /// Takes light to the next boundary and through what happens there: the one event of which every
 /// path through explicit fibres consists. Volume absorption (Beer–Lambert) dims it along the way,
@@ -92,8 +71,12 @@ inline FibreStep advance(const kernel::FibreTracer& tracer, std::span<const Fibr
     for (size_t band = 0; band < light.optical_depth.size(); ++band)
         light.optical_depth[band] +=
             medium.absorption_per_um[band] * inside_length + medium.surface_depth;
-    const BoundaryEvent event = meet_boundary(light.direction, point.normal, light.inside,
-                                              medium.refractive_index, rng.uniform());
+    const BoundaryEvent event =
+        medium.roughness < kLeastRoughness
+            ? meet_boundary(light.direction, point.normal, light.inside, medium.refractive_index,
+                            rng.uniform())
+            : meet_rough_boundary(light.direction, point.normal, light.inside,
+                                  medium.refractive_index, medium.roughness, rng);
     light.position = point.position;
     light.direction = event.direction;
     light.segment = point.segment;

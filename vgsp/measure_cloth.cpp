@@ -33,7 +33,7 @@ uint64_t text_hash(const std::string& text) {
 FibreOptics undyed(const FibreSpec& fibre, size_t bands) {
     return {fibre.refractive_index,
             fibre.absorption_per_um.value_or(std::vector<double>(bands, 0.0)),
-            fibre.surface_absorption};
+            fibre.surface_absorption, fibre.roughness};
 }
 
 void dye(FibreOptics& optics, const FibreSpec& fibre, const ColourSolver& solver,

@@ -35,6 +35,8 @@ toml::table fibre_table(const FibreSpec& fibre) {
         table.insert("density_g_cm3", *fibre.density_g_cm3);
     if (fibre.diameter_variation != 0)
         table.insert("diameter_variation", fibre.diameter_variation);
+    if (fibre.roughness != 0)
+        table.insert("roughness", fibre.roughness);
     if (fibre.absorption_per_um)
         table.insert("absorption_per_um", toml_array(*fibre.absorption_per_um));
     if (fibre.color)
@@ -54,7 +56,8 @@ std::string_view either(const TomlReader& file, std::string_view first, std::str
 
 FibreSpec read_fibre(const TomlReader& file, size_t bands) {
     file.allow_only({"diameter_um", "dtex", "density_g_cm3", "diameter_variation",
-                     "refractive_index", "absorption_per_um", "color", "surface_absorption"});
+                     "refractive_index", "absorption_per_um", "color", "surface_absorption",
+                     "roughness"});
     FibreSpec fibre;
     if (file.has("density_g_cm3"))
         fibre.density_g_cm3 = file.number("density_g_cm3", kDensity);
@@ -79,6 +82,7 @@ FibreSpec read_fibre(const TomlReader& file, size_t bands) {
                 ? file.numbers("absorption_per_um", kAbsorption, bands)
                 : std::vector<double>(bands, file.number("absorption_per_um", kAbsorption));
     fibre.surface_absorption = file.number("surface_absorption", kShare, 0);
+    fibre.roughness = file.number("roughness", kShare, 0);
     return fibre;
 }
 

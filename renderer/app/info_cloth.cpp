@@ -70,6 +70,8 @@ std::string yarn_text(const YarnSpec& yarn) {
         text +=
             ", plied" + (yarn.ply_twist_per_m == 0 ? std::string(" without twist")
                                                    : twist_text(yarn.ply_twist_per_m).substr(1));
+    if (yarn.fibre.roughness > 0)
+        text += fmt::format(", rough by {:g}", yarn.fibre.roughness);
     return text + irregularity_text(yarn);
 }
 

@@ -52,13 +52,13 @@ YarnSpec filament_yarn() {
     return yarn;
 }
 
-void plain_weave(benchmark::State& state) {
+void plain_weave(benchmark::State& state, double roughness) {
     Cloth cloth;
     cloth.draft = named_weave("plain");
     cloth.ends_per_cm = cloth.picks_per_cm = 50;
     cloth.warp = cloth.weft = filament_yarn();
     run(state, build_micro_element(cloth).fibres,
-        std::vector<FibreOptics>(2, {1.53, {0, 0, 0}, 0}));
+        std::vector<FibreOptics>(2, {1.53, {0, 0, 0}, 0, roughness}));
 }
 
 BENCHMARK(reference_stack)
@@ -68,9 +68,15 @@ BENCHMARK(reference_stack)
     ->UseRealTime()
     ->Unit(benchmark::kSecond)
     ->Iterations(3);
-BENCHMARK(plain_weave)
+BENCHMARK_CAPTURE(plain_weave, smooth, 0.0)
     ->Arg(1)
     ->Arg(2)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kSecond)
+    ->Iterations(3);
+BENCHMARK_CAPTURE(plain_weave, rough, 0.1)
+    ->Arg(1)
     ->MeasureProcessCPUTime()
     ->UseRealTime()
     ->Unit(benchmark::kSecond)

@@ -42,6 +42,7 @@ diameter_um = 12
 refractive_index = 1.55
 color = [0.5, 0.25, 0]
 surface_absorption = 0.01
+roughness = 0.2
 )";
 
 /// kCloth with its only `old_words` replaced.
@@ -108,6 +109,7 @@ TEST(Cloth, EveryKeyIsRead) {
     weft.fibre.refractive_index = 1.55;
     weft.fibre.color = {0.5, 0.25, 0};
     weft.fibre.surface_absorption = 0.01;
+    weft.fibre.roughness = 0.2;
     EXPECT_EQ(cloth.weft, weft);
 }
 
@@ -370,6 +372,7 @@ TEST(Cloth, BadValuesAreRefusedAtTheirPlace) {
              {"diameter_um = 11.9", "diameter_um = -11.9", "-11.9", "(0, 1000]"},
              {"refractive_index = 1.526", "refractive_index = 0.99", "0.99", "[1, 4]"},
              {"surface_absorption = 0.01", "surface_absorption = 1.1", "1.1", "[0, 1]"},
+             {"roughness = 0.2", "roughness = 1.1", "1.1", "[0, 1]"},
              {"[0.5, 0.25, 0]", "[0.5, 1, 0]", "1, 0]", "[0, 1)"},
              {"[0.5, 0.25, 0]", "[0.5, 0.25]", "[0.5, 0.25]", "3 numbers"},
              {"[0.5, 0.25, 0]", "[0.5, 0.25, 0, 0]", "[0.5, 0.25, 0, 0]", "3 numbers"},

@@ -147,6 +147,8 @@ TEST(Goniophotometer, RefusesWhatHasNoMeaning) {
     refused({1.5, {0, 0}, 0}, {});
     refused({1.5, {0, 0, -1}, 0}, {});
     refused({1.5, {0, 0, 0}, 1.1}, {});
+    refused({1.5, {0, 0, 0}, 0, -0.1}, {});
+    refused({1.5, {0, 0, 0}, 0, NAN}, {});
     refused({1.5, {0, 0, 0}, 0}, {.accuracy = 0});
     refused({1.5, {0, 0, 0}, 0}, {.max_events = 0});
     EXPECT_THROW(measure(tracer, {}, {}, table), std::invalid_argument);
