@@ -3,7 +3,9 @@
 #include "renderer/kernel/fibre_tracer.h"
 #include "vgsp/fibre_boundary.h"
 
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace rapport {
@@ -16,20 +18,24 @@ struct FibreOptics {
     double roughness = 0;                  ///< of the surface, see meet_rough_boundary()
 };
 
-/// FibreOptics made ready for tracing: whatever dims light is an optical depth, so that the share
-/// of light left in band b is exp(−Σ depth_b).
+/// Other dyes for the same fibres: by name of the set, volume absorption [1/µm] per kind and band.
+using Colourways = std::map<std::string, std::vector<std::vector<double>>>;
+
+/// FibreOptics made ready for tracing. Dyes only dim a path, so that all of them share it: a
+/// channel is a band in one set of dyes, first those of FibreOptics, then the colourways.
 struct FibreMedium {
     double refractive_index;
     double surface_depth;                  ///< −ln(1 − surface absorption), infinite for 1
-    std::vector<double> absorption_per_um; ///< per band
+    std::vector<double> absorption_per_um; ///< per channel: [set of dyes, band]
     double roughness;
 };
 
 /// Throws std::invalid_argument for an index below 1, negative absorption, a surface absorption
-/// or roughness outside [0, 1], another number of bands than `bands`, or a fibre whose kind has no
-/// optics.
+/// or roughness outside [0, 1], another number of bands than `bands` or of kinds than `optics`, or
+/// a fibre whose kind has no optics.
 std::vector<FibreMedium> fibre_media(std::span<const FibreOptics> optics, size_t bands,
-                                     const kernel::FibreTracer& tracer);
+                                     const kernel::FibreTracer& tracer,
+                                     const Colourways& colourways = {});
 
 /// Light on its way through the fibres.
 struct FibreLight {
@@ -38,8 +44,19 @@ struct FibreLight {
     bool inside = false;                           ///< that segment's fibre
     bool scattered = false;                        ///< an event changed its direction
     uint32_t events = 0, overlaps = 0;
-    std::vector<double> optical_depth; ///< per band
+    double surface_depth = 0;   ///< optical depth of the boundaries it met
+    std::vector<double> length; ///< travelled inside fibres of each kind [µm]
 };
+
+/// Optical depth of the light's way in each channel: the share exp(−depth) is left of it, by
+/// Beer–Lambert within the fibres and by what their surfaces took.
+inline void optical_depths(const FibreLight& light, std::span<const FibreMedium> media,
+                           std::span<double> depths) {
+    std::ranges::fill(depths, light.surface_depth);
+    for (size_t kind = 0; kind < media.size(); ++kind)
+        for (size_t channel = 0; channel < depths.size(); ++channel)
+            depths[channel] += media[kind].absorption_per_um[channel] * light.length[kind];
+}
 
 enum class FibreStep : uint8_t {
     event,  ///< it met a boundary, where it was reflected or refracted
@@ -48,9 +65,8 @@ enum class FibreStep : uint8_t {
 };
 
 /// Takes light to the next boundary and through what happens there: the one event of which every
-/// path through explicit fibres consists. Volume absorption (Beer–Lambert) dims it along the way,
-/// surface absorption at the boundary. Where fibres overlap, light that leaves one inside another
-/// is shifted back to the surface of the second and enters there (the paper, section 4).
+/// path through explicit fibres consists. Where fibres overlap, light that leaves one inside
+/// another is shifted back to the surface of the second and enters there (the paper, section 4).
 inline FibreStep advance(const kernel::FibreTracer& tracer, std::span<const FibreMedium> media,
                          FibreLight& light, CounterRng& rng) {
     kernel::FibrePoint point;
@@ -66,11 +82,11 @@ inline FibreStep advance(const kernel::FibreTracer& tracer, std::span<const Fibr
         light.overlaps += entry.overlap;
         point = entry.point;
     }
-    const FibreMedium& medium = media[tracer.segments()[point.segment].kind];
-    const double inside_length = light.inside ? point.distance : 0;
-    for (size_t band = 0; band < light.optical_depth.size(); ++band)
-        light.optical_depth[band] +=
-            medium.absorption_per_um[band] * inside_length + medium.surface_depth;
+    const uint32_t kind = tracer.segments()[point.segment].kind;
+    const FibreMedium& medium = media[kind];
+    if (light.inside)
+        light.length[kind] += point.distance;
+    light.surface_depth += medium.surface_depth;
     const BoundaryEvent event =
         medium.roughness < kLeastRoughness
             ? meet_boundary(light.direction, point.normal, light.inside, medium.refractive_index,

@@ -93,7 +93,7 @@ class Detector {
         : paths_(paths), incident_(incident), number_(number), seed_(seed) {}
 
     void trace(uint64_t first, uint64_t count, Tally& tally) const {
-        std::vector<Tally> batches((count + kBatchPaths - 1) / kBatchPaths, Tally(paths_.bands));
+        std::vector<Tally> batches((count + kBatchPaths - 1) / kBatchPaths, Tally(paths_.channels));
         parallel_for(batches.size(), [&](size_t i) {
             const uint64_t from = i * kBatchPaths, to = std::min(count, from + kBatchPaths);
             trace_batch(first + from, first + to, batches[i]);
@@ -107,7 +107,7 @@ class Detector {
         const uint64_t most = settings.max_paths > 0 ? settings.max_paths : kMostPaths;
         if (most <= kPilotPaths)
             return most;
-        Tally pilot(paths_.bands);
+        Tally pilot(paths_.channels);
         while (pilot.paths < kMostPilotPaths && pilot.hits() < kPilotHits)
             trace(kFirstPilotPath + pilot.paths, kPilotPaths, pilot);
         if (pilot.hits() == 0)
@@ -123,7 +123,7 @@ class Detector {
   private:
     void trace_batch(uint64_t first, uint64_t end, Tally& tally) const {
         IncidentPath path;
-        std::vector<double> weights(paths_.bands);
+        std::vector<double> weights(paths_.channels);
         for (uint64_t k = first; k < end; ++k) {
             CounterRng rng(seed_, Purpose::incident_path, number_, k);
             paths_.trace(incident_, rng, path);

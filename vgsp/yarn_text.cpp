@@ -37,10 +37,7 @@ toml::table fibre_table(const FibreSpec& fibre) {
         table.insert("diameter_variation", fibre.diameter_variation);
     if (fibre.roughness != 0)
         table.insert("roughness", fibre.roughness);
-    if (fibre.absorption_per_um)
-        table.insert("absorption_per_um", toml_array(*fibre.absorption_per_um));
-    if (fibre.color)
-        table.insert("color", toml_array(*fibre.color));
+    add_dye(fibre, table);
     return table;
 }
 
@@ -72,15 +69,7 @@ FibreSpec read_fibre(const TomlReader& file, size_t bands) {
     }
     fibre.diameter_variation = file.number("diameter_variation", kVariation, 0);
     fibre.refractive_index = file.number("refractive_index", kRefractiveIndex);
-    if (file.has("absorption_per_um") && file.has("color"))
-        file.fail("color", "one of 'absorption_per_um' and 'color'", "both");
-    if (file.has("color"))
-        fibre.color = file.numbers("color", kColor, bands);
-    if (file.has("absorption_per_um"))
-        fibre.absorption_per_um =
-            file.is_array("absorption_per_um")
-                ? file.numbers("absorption_per_um", kAbsorption, bands)
-                : std::vector<double>(bands, file.number("absorption_per_um", kAbsorption));
+    static_cast<Dye&>(fibre) = read_dye(file, bands);
     fibre.surface_absorption = file.number("surface_absorption", kShare, 0);
     fibre.roughness = file.number("roughness", kShare, 0);
     return fibre;
@@ -112,6 +101,27 @@ Irregularity read_irregularity(const TomlReader& file) {
 }
 
 } // namespace
+
+Dye read_dye(const TomlReader& file, size_t bands) {
+    Dye dye;
+    if (file.has("absorption_per_um") && file.has("color"))
+        file.fail("color", "one of 'absorption_per_um' and 'color'", "both");
+    if (file.has("color"))
+        dye.color = file.numbers("color", kColor, bands);
+    if (file.has("absorption_per_um"))
+        dye.absorption_per_um =
+            file.is_array("absorption_per_um")
+                ? file.numbers("absorption_per_um", kAbsorption, bands)
+                : std::vector<double>(bands, file.number("absorption_per_um", kAbsorption));
+    return dye;
+}
+
+void add_dye(const Dye& dye, toml::table& table) {
+    if (dye.absorption_per_um)
+        table.insert("absorption_per_um", toml_array(*dye.absorption_per_um));
+    if (dye.color)
+        table.insert("color", toml_array(*dye.color));
+}
 
 YarnSpec read_yarn(const TomlReader& file, std::vector<std::string_view> keys, size_t bands) {
     constexpr std::array kParallelKeys{"width_um", "height_um"};

@@ -113,6 +113,26 @@ TEST(Cloth, EveryKeyIsRead) {
     EXPECT_EQ(cloth.weft, weft);
 }
 
+constexpr std::string_view kColourways = R"(
+[colourway.navy]
+warp.color = [0.05, 0.08, 0.2]
+weft.absorption_per_um = 0.1
+[colourway."as it is"]
+)";
+
+TEST(Colourway, DyesTheYarnsThatItNames) {
+    const Cloth cloth = read_text(std::string(kCloth) + std::string(kColourways));
+    const std::vector<double> navy{0.05, 0.08, 0.2}, dark{0.1, 0.1, 0.1};
+    ASSERT_EQ(cloth.colourways.size(), 2u);
+    EXPECT_TRUE(cloth.colourways.at("as it is").empty());
+    EXPECT_EQ(cloth.colourways.at("navy"),
+              (std::map<std::string, Dye>{{"warp", {.absorption_per_um = {}, .color = navy}},
+                                          {"weft", {.absorption_per_um = dark, .color = {}}}}));
+    EXPECT_EQ(read_text(cloth.source).colourways, cloth.colourways);
+    EXPECT_EQ(read_text(cloth.source).source, cloth.source);
+    EXPECT_NE(cloth.source, read_text(kCloth).source);
+}
+
 TEST(Cloth, DefaultsAreThoseOfTheTable) {
     const tests::TemporaryFolder folder;
     std::string text = with("name = \"test cloth\"\n", "");
@@ -328,6 +348,33 @@ TEST(YarnOrder, FollowsTheColoursOfTheDraft) {
     EXPECT_NE(refused("7 = \"red\"", "8 = \"red\"").find("a yarn for colour 7"), std::string::npos);
     EXPECT_NE(refused("7 = \"red\"", "x = \"red\"").find("number of a colour"), std::string::npos);
     EXPECT_NE(refused("draft = 'stripes.wif'", "weave = 'plain'").find("a draft that tells"),
+              std::string::npos);
+}
+
+TEST(Colourway, NamesYarnsOfTheCloth) {
+    const std::string text = striped("", "") + "[colourway.a]\nyarn.red.color = [0.1, 0.2, 0.3]\n"
+                                               "yarn.spare.color = [0.1, 0.1, 0.1]\n";
+    const Cloth cloth = read_text(text);
+    EXPECT_TRUE(cloth.colourways.at("a").at("yarn.red").color);
+    EXPECT_EQ(cloth.colourways.at("a").size(), 1u); // the spare is not woven
+    EXPECT_NE(refusal(text + "yarn.blue.color = [0, 0, 0]").expected.find("red, spare, white"),
+              std::string::npos);
+    EXPECT_NE(refusal(text + "warp.color = [0, 0, 0]").expected.find("yarn"), std::string::npos);
+    EXPECT_EQ(read_text(cloth.source).colourways, cloth.colourways);
+    const auto refused = [&](const std::string& colourway) {
+        return refusal(std::string(kCloth) + "[colourway.a]\n" + colourway).expected;
+    };
+    EXPECT_NE(refused("fill.color = [0, 0, 0]").find("warp, weft"), std::string::npos);
+    EXPECT_NE(refused("warp.colour = [0, 0, 0]").find("color, absorption_per_um"),
+              std::string::npos);
+    EXPECT_NE(refused("warp = {}").find("'color' or"), std::string::npos);
+    EXPECT_NE(refused("warp.color = [0, 0]").find("3 numbers"), std::string::npos);
+    EXPECT_NE(refused("warp = 1").find("a table"), std::string::npos);
+    std::string many(kCloth);
+    for (int i = 0; i < 33; ++i)
+        many += "[colourway." + std::to_string(i) + "]\n";
+    EXPECT_NE(refusal(many).expected.find("at most 32"), std::string::npos);
+    EXPECT_NE(refusal(std::string(kCloth) + "[colourway.'']\n").expected.find("a name"),
               std::string::npos);
 }
 

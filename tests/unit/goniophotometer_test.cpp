@@ -217,6 +217,31 @@ TEST(MeasureCloth, WritesWhatDecidesTheResult) {
     EXPECT_EQ(measure_cloth(cloth, options).table.metadata, metadata);
 }
 
+TEST(MeasureCloth, AColourwaysColoursAreSolvedAsItsOwn) {
+    Cloth cloth = thin_cloth();
+    cloth.warp.fibre.color = {0.8, 0.4, 0.2};
+    cloth.colourways["pale"]["warp"].color = {0.8, 0.8, 0.7};
+    cloth.colourways["pale"]["weft"].absorption_per_um = {0.001, 0, 0};
+    cloth.colourways["same"];
+    const MeasureOptions options{{.accuracy = 1}, {{Side::front, 0.5, 0}}};
+    const BsdfTable table = measure_cloth(cloth, options).table;
+    const auto& metadata = table.metadata;
+    EXPECT_EQ(metadata.at("colourway.same.warp_absorption_per_um"),
+              metadata.at("warp_absorption_per_um"));
+    EXPECT_EQ(metadata.at("colourway.pale.weft_absorption_per_um"), "0.001 0 0");
+    EXPECT_EQ(table.colourways.at("same").intensity, table.intensity);
+    cloth.warp.fibre.color = {0.8, 0.8, 0.7};
+    EXPECT_EQ(measure_cloth(cloth, options).table.metadata.at("warp_absorption_per_um"),
+              metadata.at("colourway.pale.warp_absorption_per_um"));
+    cloth.colourways["pale"]["weft"] = {.absorption_per_um = {}, .color = {{0.5, 0.5, 0.0001}}};
+    try {
+        measure_cloth(cloth, options);
+        FAIL() << "a black that no dye gives was accepted";
+    } catch (const FileError& error) {
+        EXPECT_EQ(error.place, "colourway.pale.weft.color");
+    }
+}
+
 TEST(MeasureCloth, NamesAColourThatCannotBeReached) {
     Cloth cloth = thin_cloth();
     cloth.weft.fibre.color = {0.5, 0.5, 0.0001};
