@@ -2,6 +2,7 @@
 
 #include "renderer/core/bands.h"
 #include "vgsp/draft.h"
+#include "vgsp/per_band.h"
 
 #include <filesystem>
 #include <map>
@@ -55,7 +56,8 @@
 //                                                                (exactly one of these two)
 //   density_g_cm3        g/cm³ (0, 25]                 optional  needed by dtex, tex and for mass
 //   diameter_variation         [0, 0.3]                0         see FibreSpec
-//   refractive_index           [1, 4]                            the same in all bands
+//   refractive_index           [1, 4]                            per band, or one for all bands,
+//                                                                which are then traced together
 //   absorption_per_um    1/µm  0 or more               0         per band, or one for all bands
 //   color                      [0, 1)                  optional  per band, instead of absorption
 //   surface_absorption         [0, 1]                  0         see FibreSpec
@@ -86,7 +88,7 @@ struct FibreSpec : Dye {
     /// Coefficient of variation of the diameter from fibre to fibre: standard deviation over mean
     /// of a normal distribution cut off at three standard deviations.
     double diameter_variation = 0;
-    double refractive_index = 0;
+    PerBand refractive_index = 1;
     /// Share of the light that each passage or reflection at a fibre's surface takes, [0, 1].
     double surface_absorption = 0;
     /// Of the surface: the width α of the Trowbridge–Reitz (GGX) distribution of its facets'

@@ -2,6 +2,7 @@
 
 #include "renderer/kernel/fibre_tracer.h"
 #include "vgsp/fibre_boundary.h"
+#include "vgsp/per_band.h"
 
 #include <map>
 #include <span>
@@ -12,7 +13,7 @@ namespace rapport {
 
 /// Optics of one kind of fibre (FibreChain::kind).
 struct FibreOptics {
-    double refractive_index = 1.5;         ///< against air, at least 1; the same in all bands
+    PerBand refractive_index = 1.5;        ///< against air, at least 1
     std::vector<double> absorption_per_um; ///< per band
     double surface_absorption = 0;         ///< share lost at each boundary event, [0, 1]
     double roughness = 0;                  ///< of the surface, see meet_rough_boundary()
@@ -30,12 +31,24 @@ struct FibreMedium {
     double roughness;
 };
 
+/// Whether an index differs between bands, which then take different paths.
+bool disperses(std::span<const FibreOptics> optics);
+/// The same fibres in one band alone.
+std::vector<FibreOptics> in_band(std::span<const FibreOptics> optics, size_t band);
+
+/// Of fibres that do not disperse.
+///
 /// Throws std::invalid_argument for an index below 1, negative absorption, a surface absorption
 /// or roughness outside [0, 1], another number of bands than `bands` or of kinds than `optics`, or
 /// a fibre whose kind has no optics.
 std::vector<FibreMedium> fibre_media(std::span<const FibreOptics> optics, size_t bands,
                                      const kernel::FibreTracer& tracer,
                                      const Colourways& colourways = {});
+/// For each group of bands that share paths: of all bands, or of each if the fibres disperse.
+std::vector<std::vector<FibreMedium>> media_of_groups(std::span<const FibreOptics> optics,
+                                                      size_t bands,
+                                                      const kernel::FibreTracer& tracer,
+                                                      const Colourways& colourways = {});
 
 /// Light on its way through the fibres.
 struct FibreLight {

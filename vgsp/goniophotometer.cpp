@@ -281,11 +281,13 @@ GoniophotometerCounts measure(std::span<const kernel::FibreTracer> realisations,
     if (realisations.empty() || realisations.size() > kBatchPaths)
         throw std::invalid_argument("no realisation of the cloth, or too many");
     const size_t bands = table.bands.count();
-    const std::vector<FibreMedium> media = fibre_media(optics, bands, realisations[0], colourways);
-    PathTracers tracers{realisations.size(), 1, {}};
-    for (const kernel::FibreTracer& tracer : realisations)
-        tracers.tracers.push_back(
-            {tracer, media, bands * (1 + colourways.size()), settings.max_events, true});
+    const std::vector<std::vector<FibreMedium>> groups =
+        media_of_groups(optics, bands, realisations[0], colourways);
+    PathTracers tracers{realisations.size(), groups.size(), {}};
+    const size_t channels = bands / groups.size() * (1 + colourways.size());
+    for (const std::vector<FibreMedium>& media : groups)
+        for (const kernel::FibreTracer& tracer : realisations)
+            tracers.tracers.push_back({tracer, media, channels, settings.max_events, true});
     table.colourways.clear();
     for (const auto& [name, dyes] : colourways)
         table.colourways[name]; // filled in the end

@@ -30,7 +30,7 @@ uint64_t text_hash(const std::string& text) {
     return hash;
 }
 
-/// Turns dyes into absorption; the paths to solve colours with are traced when the first is met.
+/// Turns dyes into absorption.
 class Dyer {
   public:
     Dyer(const Cloth& cloth, const kernel::FibreTracer& tracer, std::span<const FibreOptics> undyed,
@@ -43,19 +43,22 @@ class Dyer {
             return *dye.absorption_per_um;
         std::vector<double> absorption(cloth_.bands.count(), 0.0);
         for (size_t band = 0; dye.color && band < absorption.size(); ++band)
-            absorption[band] = solved((*dye.color)[band], place + ".color");
+            absorption[band] = solved(band, (*dye.color)[band], place + ".color");
         return absorption;
     }
 
   private:
-    double solved(double albedo, const std::string& place) {
-        if (!solver_)
-            solver_.emplace(tracer_, undyed_, settings_.max_events, settings_.seed);
-        const std::optional<double> absorption = solver_->absorption_for(albedo);
+    double solved(size_t band, double albedo, const std::string& place) {
+        const size_t group = disperses(undyed_) ? band : 0;
+        const ColourSolver& solver = solvers_
+                                         .try_emplace(group, tracer_, in_band(undyed_, group),
+                                                      settings_.max_events, settings_.seed)
+                                         .first->second;
+        const std::optional<double> absorption = solver.absorption_for(albedo);
         if (!absorption)
             throw FileError(cloth_.path.string(), place,
                             fmt::format("an albedo this cloth can have, {:.3f} to {:.3f}",
-                                        solver_->least_albedo(), solver_->greatest_albedo()),
+                                        solver.least_albedo(), solver.greatest_albedo()),
                             fmt::format("{}", albedo));
         return *absorption;
     }
@@ -64,7 +67,7 @@ class Dyer {
     const kernel::FibreTracer& tracer_;
     std::span<const FibreOptics> undyed_;
     const GoniophotometerSettings& settings_;
-    std::optional<ColourSolver> solver_;
+    std::map<size_t, ColourSolver> solvers_; ///< by band, or one for all bands
 };
 
 /// Numbers in the shortest form that reads back the same.
@@ -79,6 +82,7 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
         {"cloth", cloth.source},
         {"cloth_hash", fmt::format("fnv1a64:{:016x}", text_hash(cloth.source))},
         {"bands", fmt::format("{}", fmt::join(cloth.bands.names, " "))},
+        {"dispersion", disperses(optics.fibres) ? "yes" : "no"},
         {"seed", fmt::format("{}", settings.seed)},
         {"accuracy_asked", fmt::format("{}", settings.accuracy)},
         {"max_paths", fmt::format("{}", settings.max_paths)},

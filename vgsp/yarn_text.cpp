@@ -29,8 +29,12 @@ constexpr int kMaxPlies = 6;
 
 toml::table fibre_table(const FibreSpec& fibre) {
     toml::table table{{"diameter_um", fibre.diameter_um},
-                      {"refractive_index", fibre.refractive_index},
                       {"surface_absorption", fibre.surface_absorption}};
+    const std::vector<double>& index = fibre.refractive_index.values();
+    if (index.size() == 1)
+        table.insert("refractive_index", index[0]);
+    else
+        table.insert("refractive_index", toml_array(index));
     if (fibre.density_g_cm3)
         table.insert("density_g_cm3", *fibre.density_g_cm3);
     if (fibre.diameter_variation != 0)
@@ -68,7 +72,7 @@ FibreSpec read_fibre(const TomlReader& file, size_t bands) {
                       fmt::format("{:g} µm", fibre.diameter_um));
     }
     fibre.diameter_variation = file.number("diameter_variation", kVariation, 0);
-    fibre.refractive_index = file.number("refractive_index", kRefractiveIndex);
+    fibre.refractive_index = file.numbers_or_one("refractive_index", kRefractiveIndex, bands);
     static_cast<Dye&>(fibre) = read_dye(file, bands);
     fibre.surface_absorption = file.number("surface_absorption", kShare, 0);
     fibre.roughness = file.number("roughness", kShare, 0);
@@ -108,11 +112,10 @@ Dye read_dye(const TomlReader& file, size_t bands) {
         file.fail("color", "one of 'absorption_per_um' and 'color'", "both");
     if (file.has("color"))
         dye.color = file.numbers("color", kColor, bands);
-    if (file.has("absorption_per_um"))
-        dye.absorption_per_um =
-            file.is_array("absorption_per_um")
-                ? file.numbers("absorption_per_um", kAbsorption, bands)
-                : std::vector<double>(bands, file.number("absorption_per_um", kAbsorption));
+    if (file.has("absorption_per_um")) {
+        dye.absorption_per_um = file.numbers_or_one("absorption_per_um", kAbsorption, bands);
+        dye.absorption_per_um->resize(bands, dye.absorption_per_um->front());
+    }
     return dye;
 }
 

@@ -71,6 +71,9 @@ std::string yarn_text(const YarnSpec& yarn) {
         text +=
             ", plied" + (yarn.ply_twist_per_m == 0 ? std::string(" without twist")
                                                    : twist_text(yarn.ply_twist_per_m).substr(1));
+    if (yarn.fibre.refractive_index.differs())
+        text += fmt::format(", of index {} by band",
+                            fmt::join(yarn.fibre.refractive_index.values(), ", "));
     if (yarn.fibre.roughness > 0)
         text += fmt::format(", rough by {:g}", yarn.fibre.roughness);
     return text + irregularity_text(yarn);

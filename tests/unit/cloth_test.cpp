@@ -120,6 +120,16 @@ weft.absorption_per_um = 0.1
 [colourway."as it is"]
 )";
 
+TEST(Cloth, MayHaveARefractiveIndexForEachBand) {
+    const Cloth cloth =
+        read_text(with("refractive_index = 1.526", "refractive_index = [1.51, 1.52, 1.53]"));
+    EXPECT_EQ(cloth.warp.fibre.refractive_index, (PerBand{1.51, 1.52, 1.53}));
+    EXPECT_EQ(read_text(cloth.source).warp, cloth.warp);
+    EXPECT_NE(refusal(with("refractive_index = 1.526", "refractive_index = [1.51, 1.52]"))
+                  .expected.find("3 numbers"),
+              std::string::npos);
+}
+
 TEST(Colourway, DyesTheYarnsThatItNames) {
     const Cloth cloth = read_text(std::string(kCloth) + std::string(kColourways));
     const std::vector<double> navy{0.05, 0.08, 0.2}, dark{0.1, 0.1, 0.1};

@@ -145,6 +145,9 @@ TEST(Goniophotometer, RefusesWhatHasNoMeaning) {
     refused({0.9, {0, 0, 0}, 0}, {});
     refused({NAN, {0, 0, 0}, 0}, {});
     refused({1.5, {0, 0}, 0}, {});
+    refused({{1.5, 1.6}, {0, 0, 0}, 0}, {});
+    refused({{1.5, 1.6, 0.9}, {0, 0, 0}, 0}, {});
+    refused({{1.5, 1.6, 1.7}, {0, 0}, 0}, {});
     refused({1.5, {0, 0, -1}, 0}, {});
     refused({1.5, {0, 0, 0}, 1.1}, {});
     refused({1.5, {0, 0, 0}, 0, -0.1}, {});
