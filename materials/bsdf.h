@@ -58,12 +58,16 @@ class Bsdf {
     virtual Rgb albedo(const glm::vec3& eye) const = 0;
 };
 
+/// A measured table by file name, `.bsdf` or a `.toml` measured on the way, in a colourway of the
+/// cloth (empty: its own dyes).
+using LoadTable = std::function<std::shared_ptr<const TableBsdf>(const std::filesystem::path& path,
+                                                                 const std::string& colourway)>;
+
 /// What a material is made from.
 struct MaterialContext {
     const Params& params;
     std::filesystem::path base_dir; ///< file names are relative to it
-    /// A measured table by file name, `.bsdf` or a `.toml` measured on the way.
-    std::function<std::shared_ptr<const TableBsdf>(const std::filesystem::path&)> load_table;
+    LoadTable load_table;
 };
 
 using MaterialFactory = std::function<std::shared_ptr<const Bsdf>(const MaterialContext&)>;

@@ -8,6 +8,7 @@ namespace {
 
 /// A cloth by its measured table.
 ///     "string filename"  a `.bsdf` table or a cloth `.toml`; required
+///     "string colourway" in which of the cloth's dyes; default its own
 ///     "float rotation"   turns the weave on the surface: degrees, counter-clockwise as seen from
 ///                        the face, so that 90 lays the weft along +v; default 0
 class Cloth final : public Bsdf {
@@ -59,7 +60,8 @@ std::shared_ptr<const Bsdf> make_cloth(const MaterialContext& context) {
     if (filename.empty())
         context.params.fail("filename", "\"string filename\" of a .bsdf or .toml", "none");
     const float rotation = context.params.get_float("rotation", 0);
-    return std::make_shared<Cloth>(context.load_table(context.base_dir / filename),
+    const std::string colourway = context.params.get_string("colourway", "");
+    return std::make_shared<Cloth>(context.load_table(context.base_dir / filename, colourway),
                                    radians(rotation));
 }
 

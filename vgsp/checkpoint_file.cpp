@@ -16,6 +16,9 @@ nlohmann::json identity(const BsdfTable& table) {
     for (const IncidentDirection& from : table.incident)
         incident.push_back({from.side == Side::front ? "front" : "back", from.theta, from.phi});
     run["rings of exit bins"] = table.exits.rings();
+    auto& colourways = run["colourways"] = nlohmann::json::array();
+    for (const auto& [name, dyes] : table.colourways)
+        colourways.push_back(name);
     return run;
 }
 
@@ -67,14 +70,13 @@ void write_checkpoint(const std::filesystem::path& path, const BsdfTable& table,
         sums.insert(sums.end(), own.begin(), own.end());
         counts.insert(counts.end(), own_counts.begin(), own_counts.end());
     }
-    const uint64_t directions = tallies.size();
+    const uint64_t rows = tallies.size();
     TensorFile file;
     file["run"] = TensorField::text(identity(table).dump());
     file["planned"] =
-        TensorField::of<uint64_t>({directions}, std::vector(planned.begin(), planned.end()));
-    file["sums"] = TensorField::of<double>({directions, sums.size() / directions}, sums);
-    file["path_counts"] =
-        TensorField::of<uint64_t>({directions, counts.size() / directions}, counts);
+        TensorField::of<uint64_t>({planned.size()}, std::vector(planned.begin(), planned.end()));
+    file["sums"] = TensorField::of<double>({rows, sums.size() / rows}, sums);
+    file["path_counts"] = TensorField::of<uint64_t>({rows, counts.size() / rows}, counts);
     write_tensor_file(file, path);
 }
 
@@ -87,18 +89,19 @@ void read_checkpoint(const std::filesystem::path& path, const BsdfTable& table,
         throw FileError(name, "run", "the checkpoint of a measurement", "another kind of file");
     check_same_run(identity(table), nlohmann::json::parse(run->second.text(), nullptr, false),
                    name);
-    const uint64_t directions = tallies.size();
+    const uint64_t directions = table.directions(), rows = tallies.size();
     const size_t own_sums = tallies[0].sums().size();
     const size_t own_counts = tallies[0].path_counts().size();
     planned = array<uint64_t>(file, "planned", {directions}, name);
-    const auto sums = array<double>(file, "sums", {directions, own_sums}, name);
-    const auto counts = array<uint64_t>(file, "path_counts", {directions, own_counts}, name);
-    for (size_t d = 0; d < directions; ++d) {
-        tallies[d].restore(std::span(sums).subspan(d * own_sums, own_sums),
-                           std::span(counts).subspan(d * own_counts, own_counts));
-        if (tallies[d].paths() > planned[d])
+    const auto sums = array<double>(file, "sums", {rows, own_sums}, name);
+    const auto counts = array<uint64_t>(file, "path_counts", {rows, own_counts}, name);
+    for (size_t row = 0; row < rows; ++row) {
+        tallies[row].restore(std::span(sums).subspan(row * own_sums, own_sums),
+                             std::span(counts).subspan(row * own_counts, own_counts));
+        const size_t d = row / (rows / directions);
+        if (tallies[row].paths() > planned[d])
             throw FileError(name, fmt::format("planned[{}]", d),
-                            fmt::format("at least {} paths", tallies[d].paths()),
+                            fmt::format("at least {} paths", tallies[row].paths()),
                             fmt::format("{}", planned[d]));
     }
 }

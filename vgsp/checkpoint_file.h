@@ -7,8 +7,8 @@
 namespace rapport {
 
 /// A goniophotometer's run on its way, in the tensor file container: `run`, a JSON object of the
-/// table's metadata and incident directions; `planned` [D], paths; `sums` [D, …] and `path_counts`
-/// [D, …], the tallies' own, to the last bit.
+/// table's metadata, incident directions and colourways; `planned` [D], paths; `sums` [D·C, …] and
+/// `path_counts` [D·C, …], the tallies' own for each direction in C sets of dyes, to the last bit.
 void write_checkpoint(const std::filesystem::path& path, const BsdfTable& table,
                       std::span<const uint64_t> planned, std::span<const PathTally> tallies);
 

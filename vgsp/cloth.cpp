@@ -2,6 +2,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/input_file.h"
+#include "vgsp/colourway_text.h"
 #include "vgsp/weave.h"
 #include "vgsp/yarn_text.h"
 
@@ -209,8 +210,8 @@ Cloth parse_cloth(std::string_view text, const std::filesystem::path& path,
                   const std::optional<std::filesystem::path>& draft_override) {
     const toml::table table = parse_toml(text, path.string());
     const TomlReader file(table, path.string());
-    file.allow_only(
-        {"name", "draft", "weave", "rows", "crimp_balance", "bands", "warp", "weft", "yarn"});
+    file.allow_only({"name", "draft", "weave", "rows", "crimp_balance", "bands", "warp", "weft",
+                     "yarn", "colourway"});
 
     Cloth cloth;
     cloth.path = path;
@@ -239,6 +240,7 @@ Cloth parse_cloth(std::string_view text, const std::filesystem::path& path,
     cloth.draft = std::move(placed.draft);
     cloth.draft.warnings = weavable(cloth.draft, placed.path).warnings;
     lay_in_yarns(cloth, warp, weft, yarns, file, placed.path);
+    cloth.colourways = read_colourways(file, cloth);
     cloth.source = cloth_text(cloth);
     return cloth;
 }
@@ -305,6 +307,8 @@ std::string cloth_text(const Cloth& cloth) {
             yarns.insert(yarn.name, yarn_table(yarn.yarn));
         table.insert("yarn", std::move(yarns));
     }
+    if (!cloth.colourways.empty())
+        table.insert("colourway", colourway_table(cloth.colourways));
     std::ostringstream text;
     text << toml::toml_formatter(table) << '\n';
     return text.str();

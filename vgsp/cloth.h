@@ -2,8 +2,10 @@
 
 #include "renderer/core/bands.h"
 #include "vgsp/draft.h"
+#include "vgsp/per_band.h"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,29 +56,45 @@
 //                                                                (exactly one of these two)
 //   density_g_cm3        g/cm³ (0, 25]                 optional  needed by dtex, tex and for mass
 //   diameter_variation         [0, 0.3]                0         see FibreSpec
-//   refractive_index           [1, 4]                            the same in all bands
+//   refractive_index           [1, 4]                            per band, or one for all bands,
+//                                                                which are then traced together
 //   absorption_per_um    1/µm  0 or more               0         per band, or one for all bands
 //   color                      [0, 1)                  optional  per band, instead of absorption
 //   surface_absorption         [0, 1]                  0         see FibreSpec
+//   roughness                  [0, 1]                  0         see FibreSpec
+//
+//   In each [colourway.NAME], the same cloth in other dyes; at most 32, measured together:
+//   warp, weft, yarn.NAME      table                   its own   of the yarn, where all threads are
+//                                                                alike: its `color` or its
+//                                                                `absorption_per_um`, as of a fibre
 
 namespace rapport {
 
+/// What dims light within a fibre. At most one of the two is given; neither means clear.
+struct Dye {
+    /// Volume absorption per band [1/µm], Beer–Lambert.
+    std::optional<std::vector<double>> absorption_per_um;
+    /// The albedo per band (of the default bands: linear sRGB) that a cloth wholly of this yarn
+    /// should have under diffuse light; solved for absorption (colour_solver.h).
+    std::optional<std::vector<double>> color;
+
+    bool operator==(const Dye&) const = default;
+};
+
 /// The dielectric fibres of a yarn.
-struct FibreSpec {
+struct FibreSpec : Dye {
     double diameter_um = 0;
     std::optional<double> density_g_cm3;
     /// Coefficient of variation of the diameter from fibre to fibre: standard deviation over mean
     /// of a normal distribution cut off at three standard deviations.
     double diameter_variation = 0;
-    double refractive_index = 0;
-    /// Volume absorption per band [1/µm], Beer–Lambert. At most one of this and `color` is given;
-    /// neither means clear fibres.
-    std::optional<std::vector<double>> absorption_per_um;
-    /// The albedo per band (of the default bands: linear sRGB) that a cloth wholly of this yarn
-    /// should have under diffuse light; solved for absorption (colour_solver.h).
-    std::optional<std::vector<double>> color;
+    PerBand refractive_index = 1;
     /// Share of the light that each passage or reflection at a fibre's surface takes, [0, 1].
     double surface_absorption = 0;
+    /// Of the surface: the width α of the Trowbridge–Reitz (GGX) distribution of its facets'
+    /// normals (fibre_boundary.h); half of the surface is tilted by more than arctan α. 0 = smooth,
+    /// and so is below 1e-6.
+    double roughness = 0;
 
     bool operator==(const FibreSpec&) const = default;
 };
@@ -148,6 +166,10 @@ struct Cloth {
     YarnSpec warp, weft; ///< of all threads, unless the draft has the yarns of each
     std::vector<NamedYarn> yarns;
     Bands bands;
+    /// By the colourway's name and the yarn's place (YarnKind): the dyes of those yarns that are
+    /// not dyed as they are otherwise.
+    using ColourwayDyes = std::map<std::string, std::map<std::string, Dye>>;
+    ColourwayDyes colourways;
 
     /// Where it came from, for messages, and cloth_text() for the table's metadata.
     std::filesystem::path path;

@@ -3,6 +3,8 @@
 #include "renderer/core/parallel.h"
 #include "vgsp/incident_path.h"
 
+#include <numeric>
+
 namespace rapport {
 namespace {
 
@@ -20,12 +22,11 @@ IncidentDirection diffuse_direction(CounterRng& rng) {
 
 ColourSolver::ColourSolver(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
                            int max_events, uint64_t seed) {
-    // Two bands tell length from surface: only the first is absorbed, by 1 per µm.
-    std::vector<FibreOptics> probe(optics.begin(), optics.end());
-    for (FibreOptics& kind : probe)
-        kind.absorption_per_um = {1, 0};
-    const std::vector<FibreMedium> media = fibre_media(probe, 2, tracer);
-    const IncidentPathTracer tracing{tracer, media, 2, max_events, false};
+    std::vector<FibreOptics> undyed(optics.begin(), optics.end());
+    for (FibreOptics& kind : undyed)
+        kind.absorption_per_um.clear();
+    const std::vector<FibreMedium> media = fibre_media(undyed, 0, tracer);
+    const IncidentPathTracer tracing{tracer, media, 0, max_events, false};
     std::vector<std::vector<WhitePath>> batches(kPaths / kBatchPaths);
     parallel_for(batches.size(), [&](size_t batch) {
         IncidentPath path;
@@ -35,10 +36,9 @@ ColourSolver::ColourSolver(const kernel::FibreTracer& tracer, std::span<const Fi
             tracing.trace(incident, rng, path);
             if (path.fate != PathFate::scattered)
                 continue;
-            const double surface = path.light.optical_depth[1];
-            const double weight = std::exp(-surface);
-            batches[batch].push_back(
-                {weight > 0 ? path.light.optical_depth[0] - surface : 0.0, weight});
+            const std::vector<double>& length = path.light.length;
+            batches[batch].push_back({std::accumulate(length.begin(), length.end(), 0.0),
+                                      std::exp(-path.light.surface_depth)});
         }
     });
     for (const std::vector<WhitePath>& batch : batches)

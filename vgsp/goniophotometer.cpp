@@ -33,8 +33,10 @@ class Run {
     Run(const PathTracers& tracers, const GoniophotometerSettings& settings, BsdfTable& table,
         const Checkpoint& checkpoint)
         : tracers_(tracers), settings_(settings), table_(table), checkpoint_(checkpoint),
+          dyes_(1 + table.colourways.size()),
           waiting_batches_(std::max<size_t>(
-              1, kWaitingBytes / (kBatchPaths * (1 + tracers.tracers[0].bands) * sizeof(float)))) {}
+              1,
+              kWaitingBytes / (kBatchPaths * sizeof(float) * (1 + tracers.tracers[0].channels)))) {}
 
     /// Fills the table.
     GoniophotometerCounts
@@ -47,8 +49,19 @@ class Run {
     bool time_is_up() const {
         return settings_.max_seconds > 0 && seconds() >= settings_.max_seconds;
     }
+    /// One for each direction and set of dyes in turn.
     std::vector<PathTally> empty_tallies() const {
-        return {table_.directions(), PathTally(table_, tracers_.realisations, tracers_.groups)};
+        return {table_.directions() * dyes_,
+                PathTally(table_, tracers_.realisations, tracers_.groups)};
+    }
+    /// Those of one direction, in all dyes.
+    std::span<const PathTally> of_direction(const std::vector<PathTally>& tallies,
+                                            size_t direction) const {
+        return std::span(tallies).subspan(direction * dyes_, dyes_);
+    }
+    /// Paths of one direction so far, in each group of bands.
+    uint64_t paths(const std::vector<PathTally>& tallies, size_t direction) const {
+        return tallies[direction * dyes_].paths();
     }
     /// How many paths each direction gets.
     std::vector<uint64_t> plan() const;
@@ -58,6 +71,8 @@ class Run {
     /// Traces `tasks`, sorted by direction and then by path, and adds them to the tallies in that
     /// order.
     void trace(std::span<const Task> tasks, std::vector<PathTally>& tallies) const;
+    /// Fills the table.
+    GoniophotometerCounts write(const std::vector<PathTally>& tallies) const;
     GoniophotometerProgress state(const std::vector<PathTally>& tallies, double fraction) const;
     /// Takes up an earlier run, if there is one to take up.
     bool resume(std::vector<uint64_t>& planned, std::vector<PathTally>& tallies) const;
@@ -68,6 +83,7 @@ class Run {
     const GoniophotometerSettings& settings_;
     BsdfTable& table_;
     const Checkpoint& checkpoint_;
+    size_t dyes_; ///< how many sets of them
     size_t waiting_batches_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     double tracing_since_ = 0;    ///< what came before was planning
@@ -90,6 +106,17 @@ bool larger_pilot_pays(const PathTally& pilot, double accuracy) {
     return static_cast<double>(pilot.paths()) < (1 - std::numbers::sqrt2 / 2) * margin;
 }
 
+/// How many paths reach `accuracy`, but for the risk of kPlannedSigmas.
+uint64_t paths_needed(const PathTally& pilot, double accuracy) {
+    const double needed =
+        pilot.error_of_one_path() * (1 + kPlannedSigmas * pilot.uncertainty()) / square(accuracy);
+    // Where nothing scatters there is no error to plan by (it is not a number), and paths are
+    // short: as many as the pilot had tell what goes straight through.
+    if (std::isnan(needed))
+        return kMostPilotPaths;
+    return needed < kMostPaths ? static_cast<uint64_t>(std::ceil(needed)) : kMostPaths;
+}
+
 std::vector<uint64_t> Run::plan() const {
     const uint64_t most = settings_.max_paths > 0 ? settings_.max_paths : kMostPaths;
     std::vector<uint64_t> planned(table_.directions(), most);
@@ -99,25 +126,22 @@ std::vector<uint64_t> Run::plan() const {
     std::vector<Task> tasks;
     do {
         tasks.clear();
-        for (size_t d = 0; d < pilots.size(); ++d) {
-            const uint64_t done = pilots[d].paths();
-            const uint64_t until = std::max(kPilotPaths, 2 * done);
+        for (size_t d = 0; d < planned.size(); ++d) {
+            const uint64_t done = paths(pilots, d), until = std::max(kPilotPaths, 2 * done);
+            const auto pays = [&](const PathTally& pilot) {
+                return larger_pilot_pays(pilot, settings_.accuracy);
+            };
             if (done == 0 || (until <= std::min(kMostPilotPaths, most) &&
-                              larger_pilot_pays(pilots[d], settings_.accuracy)))
+                              std::ranges::any_of(of_direction(pilots, d), pays)))
                 add_tasks(tasks, d, kFirstPilotPath + done, kFirstPilotPath + until);
         }
         trace(tasks, pilots);
     } while (!tasks.empty());
-    for (size_t d = 0; d < pilots.size(); ++d) {
-        const double needed = pilots[d].error_of_one_path() *
-                              (1 + kPlannedSigmas * pilots[d].uncertainty()) /
-                              square(settings_.accuracy);
-        // Where nothing scatters there is no error to plan by (it is not a number), and paths are
-        // short: as many as the pilot had tell what goes straight through.
-        const uint64_t paths = std::isnan(needed)    ? kMostPilotPaths
-                               : needed < kMostPaths ? static_cast<uint64_t>(std::ceil(needed))
-                                                     : kMostPaths;
-        planned[d] = std::min(most, std::max(paths, kBatchPaths));
+    for (size_t d = 0; d < planned.size(); ++d) {
+        planned[d] = kBatchPaths;
+        for (const PathTally& pilot : of_direction(pilots, d))
+            planned[d] = std::max(planned[d], paths_needed(pilot, settings_.accuracy));
+        planned[d] = std::min(most, planned[d]);
     }
     return planned;
 }
@@ -134,10 +158,11 @@ void Run::trace(std::span<const Task> tasks, std::vector<PathTally>& tallies) co
         for (size_t i = 0; i < chunk.size(); ++i)
             if (i == 0 || chunk[i].direction != chunk[i - 1].direction)
                 first_of_direction.push_back(i);
-        parallel_for(first_of_direction.size(), [&](size_t group) {
-            const size_t first = first_of_direction[group], direction = chunk[first].direction;
+        parallel_for(first_of_direction.size() * dyes_, [&](size_t task) {
+            const size_t first = first_of_direction[task / dyes_], dyes = task % dyes_;
+            const size_t direction = chunk[first].direction;
             for (size_t i = first; i < chunk.size() && chunk[i].direction == direction; ++i)
-                tallies[direction].add(found[i]);
+                tallies[direction * dyes_ + dyes].add(found[i], dyes);
         });
         tasks = tasks.subspan(chunk.size());
     }
@@ -146,9 +171,10 @@ void Run::trace(std::span<const Task> tasks, std::vector<PathTally>& tallies) co
 GoniophotometerProgress Run::state(const std::vector<PathTally>& tallies, double fraction) const {
     GoniophotometerProgress state{};
     uint64_t done = 0;
-    for (const PathTally& tally : tallies) {
-        state.accuracy = std::max(state.accuracy, tally.accuracy());
-        done += tally.counts().paths;
+    for (size_t i = 0; i < tallies.size(); ++i) {
+        state.accuracy = std::max(state.accuracy, tallies[i].accuracy());
+        if (i % dyes_ == 0)
+            done += tallies[i].counts().paths;
     }
     state.fraction = fraction;
     state.seconds = seconds();
@@ -190,8 +216,8 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
     double total = 0, done = 0;
     for (size_t d = 0; d < planned.size(); ++d) {
         total += static_cast<double>(planned[d]);
-        done += static_cast<double>(tallies[d].paths());
-        resumed_paths_ += tallies[d].counts().paths;
+        done += static_cast<double>(paths(tallies, d));
+        resumed_paths_ += tallies[d * dyes_].counts().paths;
     }
     double share = resumed_fraction_ = done / total;
     tracing_since_ = seconds();
@@ -205,7 +231,7 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
             const uint64_t until =
                 share == 1 ? planned[d]
                            : std::min(planned[d], static_cast<uint64_t>(wanted) * kBatchPaths);
-            add_tasks(tasks, d, tallies[d].paths(), until);
+            add_tasks(tasks, d, paths(tallies, d), until);
         }
         trace(tasks, tallies);
         const double took = seconds() - wave_since;
@@ -221,11 +247,22 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
             wave = std::min(wave, wave * (settings_.max_seconds - seconds()) / took);
         wave = std::max(wave, 4.0 * thread_count());
     }
-    table_.realisation_error.assign(tracers_.realisations > 1 ? planned.size() : 0, 0);
+    return write(tallies);
+}
+
+GoniophotometerCounts Run::write(const std::vector<PathTally>& tallies) const {
+    table_.realisation_error.assign(tracers_.realisations > 1 ? table_.directions() : 0, 0);
+    std::vector<Scattering*> scattering{&table_};
+    for (auto& [name, of_dyes] : table_.colourways) {
+        of_dyes = table_; // for its size
+        scattering.push_back(&of_dyes);
+    }
     GoniophotometerCounts counts;
-    for (size_t d = 0; d < planned.size(); ++d) {
-        tallies[d].write(table_, d);
-        counts += tallies[d].counts();
+    for (size_t d = 0; d < table_.directions(); ++d) {
+        for (size_t dyes = 0; dyes < dyes_; ++dyes)
+            tallies[d * dyes_ + dyes].write(*scattering[dyes], d);
+        table_.paths[d] = paths(tallies, d);
+        counts += tallies[d * dyes_].counts();
     }
     return counts;
 }
@@ -236,7 +273,7 @@ GoniophotometerCounts measure(std::span<const kernel::FibreTracer> realisations,
                               std::span<const FibreOptics> optics,
                               const GoniophotometerSettings& settings, BsdfTable& table,
                               const std::function<void(const GoniophotometerProgress&)>& progress,
-                              const Checkpoint& checkpoint) {
+                              const Checkpoint& checkpoint, const Colourways& colourways) {
     if (!(settings.accuracy > 0))
         throw std::invalid_argument("the accuracy asked for is not positive");
     if (settings.max_events < 1)
@@ -244,10 +281,16 @@ GoniophotometerCounts measure(std::span<const kernel::FibreTracer> realisations,
     if (realisations.empty() || realisations.size() > kBatchPaths)
         throw std::invalid_argument("no realisation of the cloth, or too many");
     const size_t bands = table.bands.count();
-    const std::vector<FibreMedium> media = fibre_media(optics, bands, realisations[0]);
-    PathTracers tracers{realisations.size(), 1, {}};
-    for (const kernel::FibreTracer& tracer : realisations)
-        tracers.tracers.push_back({tracer, media, bands, settings.max_events, true});
+    const std::vector<std::vector<FibreMedium>> groups =
+        media_of_groups(optics, bands, realisations[0], colourways);
+    PathTracers tracers{realisations.size(), groups.size(), {}};
+    const size_t channels = bands / groups.size() * (1 + colourways.size());
+    for (const std::vector<FibreMedium>& media : groups)
+        for (const kernel::FibreTracer& tracer : realisations)
+            tracers.tracers.push_back({tracer, media, channels, settings.max_events, true});
+    table.colourways.clear();
+    for (const auto& [name, dyes] : colourways)
+        table.colourways[name]; // filled in the end
     return Run(tracers, settings, table, checkpoint).measure(progress);
 }
 

@@ -49,6 +49,10 @@ struct Checkpoint {
 /// direction d depends on (seed, d, k) alone, so the result does not depend on the threads. Light
 /// of every path is accounted for as reflected, transmitted, unscattered, absorbed or capped.
 ///
+/// The dyes of `colourways` share the paths with those of `optics`, each path being weighed in all
+/// of them at its end. The accuracy asked for is then reached in all, and the one that progress
+/// tells is the largest.
+///
 /// How many paths a direction gets is fixed before they are traced, by a pilot whose own paths are
 /// thrown away: to stop when the estimate looks good would make it look better than it is. The
 /// pilot's three-sigma bound on its variance is what is planned for, so that ε seldom ends above
@@ -65,15 +69,16 @@ GoniophotometerCounts
 measure(std::span<const kernel::FibreTracer> realisations, std::span<const FibreOptics> optics,
         const GoniophotometerSettings& settings, BsdfTable& table,
         const std::function<void(const GoniophotometerProgress&)>& progress = {},
-        const Checkpoint& checkpoint = {});
+        const Checkpoint& checkpoint = {}, const Colourways& colourways = {});
 
 /// The same for an assembly that is not random.
 inline GoniophotometerCounts
 measure(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
         const GoniophotometerSettings& settings, BsdfTable& table,
         const std::function<void(const GoniophotometerProgress&)>& progress = {},
-        const Checkpoint& checkpoint = {}) {
-    return measure(std::span(&tracer, 1), optics, settings, table, progress, checkpoint);
+        const Checkpoint& checkpoint = {}, const Colourways& colourways = {}) {
+    return measure(std::span(&tracer, 1), optics, settings, table, progress, checkpoint,
+                   colourways);
 }
 
 } // namespace rapport

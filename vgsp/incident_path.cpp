@@ -5,15 +5,15 @@
 namespace rapport {
 namespace {
 
-/// Below this weight in its brightest band a path plays for its life: it goes on at this weight
+/// Below this weight in its brightest channel a path plays for its life: it goes on at this weight
 /// with a probability that leaves the mean as it is.
 constexpr double kDim = 0.02;
 constexpr double kDimDepth = 3.9; // a little under −ln kDim
 
 /// Whether the path goes on.
-bool survives(IncidentPath& path, CounterRng& rng) {
-    const auto& depth = path.light.optical_depth;
-    const double least_depth = *std::min_element(depth.begin(), depth.end());
+bool survives(IncidentPath& path, std::span<const FibreMedium> media, CounterRng& rng) {
+    optical_depths(path.light, media, path.optical_depth);
+    const double least_depth = *std::ranges::min_element(path.optical_depth);
     if (least_depth < kDimDepth) // boost is never below 1
         return true;
     const double brightest = path.boost * std::exp(-least_depth);
@@ -44,24 +44,27 @@ void IncidentPathTracer::trace(const IncidentDirection& incident, CounterRng& rn
     light.segment = kernel::FibreTracer::kNone;
     light.inside = light.scattered = false;
     light.events = light.overlaps = 0;
-    light.optical_depth.assign(bands, 0.0);
+    light.surface_depth = 0;
+    light.length.assign(media.size(), 0.0);
+    path.optical_depth.assign(channels, 0.0);
     path.boost = 1;
-    path.fate = PathFate::capped;
-    while (light.events < static_cast<uint32_t>(max_events)) {
+    path.fate = follow(path, rng);
+    optical_depths(light, media, path.optical_depth);
+}
+
+PathFate IncidentPathTracer::follow(IncidentPath& path, CounterRng& rng) const {
+    FibreLight& light = path.light;
+    while (light.events < static_cast<uint32_t>(max_events))
         switch (advance(tracer, media, light, rng)) {
         case FibreStep::leaves:
-            path.fate = light.scattered ? PathFate::scattered : PathFate::unscattered;
-            return;
+            return light.scattered ? PathFate::scattered : PathFate::unscattered;
         case FibreStep::lost:
-            return;
+            return PathFate::capped;
         case FibreStep::event:
-            break;
+            if (roulette && !survives(path, media, rng))
+                return PathFate::absorbed;
         }
-        if (roulette && !survives(path, rng)) {
-            path.fate = PathFate::absorbed;
-            return;
-        }
-    }
+    return PathFate::capped;
 }
 
 } // namespace rapport

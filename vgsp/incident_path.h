@@ -16,23 +16,28 @@ enum class PathFate : uint8_t {
 struct IncidentPath {
     FibreLight light;
     PathFate fate = PathFate::absorbed;
-    double boost = 1; ///< by surviving the roulette
+    double boost = 1;                  ///< by surviving the roulette
+    std::vector<double> optical_depth; ///< per channel (FibreMedium)
 
-    /// Share of the path's light in that band that is left.
-    double weight(size_t band) const { return boost * std::exp(-light.optical_depth[band]); }
+    /// Share of the path's light in that channel that is left.
+    double weight(size_t channel) const { return boost * std::exp(-optical_depth[channel]); }
 };
 
 /// Paths of parallel light that falls on an endless cloth; constant, callable from any thread.
 struct IncidentPathTracer {
     const kernel::FibreTracer& tracer;
     std::span<const FibreMedium> media;
-    size_t bands;
+    size_t channels;
     int max_events;
     bool roulette; ///< end dim paths early, without bias
 
     /// Follows one path from a point uniform over the cell's area, on the bounding plane of the
     /// side it arrives on. `path` is overwritten.
     void trace(const IncidentDirection& incident, CounterRng& rng, IncidentPath& path) const;
+
+  private:
+    /// To its end.
+    PathFate follow(IncidentPath& path, CounterRng& rng) const;
 };
 
 /// Unit vector towards where the light comes from.

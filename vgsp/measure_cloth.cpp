@@ -30,30 +30,50 @@ uint64_t text_hash(const std::string& text) {
     return hash;
 }
 
-FibreOptics undyed(const FibreSpec& fibre, size_t bands) {
-    return {fibre.refractive_index,
-            fibre.absorption_per_um.value_or(std::vector<double>(bands, 0.0)),
-            fibre.surface_absorption};
-}
+/// Turns dyes into absorption.
+class Dyer {
+  public:
+    Dyer(const Cloth& cloth, const kernel::FibreTracer& tracer, std::span<const FibreOptics> undyed,
+         const GoniophotometerSettings& settings)
+        : cloth_(cloth), tracer_(tracer), undyed_(undyed), settings_(settings) {}
 
-void dye(FibreOptics& optics, const FibreSpec& fibre, const ColourSolver& solver,
-         const Cloth& cloth, const std::string& place) {
-    for (size_t band = 0; band < fibre.color->size(); ++band) {
-        const double wanted = (*fibre.color)[band];
-        const std::optional<double> absorption = solver.absorption_for(wanted);
+    /// [1/µm] per band; `place` is where the file tells of the dye.
+    std::vector<double> absorption(const Dye& dye, const std::string& place) {
+        if (dye.absorption_per_um)
+            return *dye.absorption_per_um;
+        std::vector<double> absorption(cloth_.bands.count(), 0.0);
+        for (size_t band = 0; dye.color && band < absorption.size(); ++band)
+            absorption[band] = solved(band, (*dye.color)[band], place + ".color");
+        return absorption;
+    }
+
+  private:
+    double solved(size_t band, double albedo, const std::string& place) {
+        const size_t group = disperses(undyed_) ? band : 0;
+        const ColourSolver& solver = solvers_
+                                         .try_emplace(group, tracer_, in_band(undyed_, group),
+                                                      settings_.max_events, settings_.seed)
+                                         .first->second;
+        const std::optional<double> absorption = solver.absorption_for(albedo);
         if (!absorption)
-            throw FileError(cloth.path.string(), place,
+            throw FileError(cloth_.path.string(), place,
                             fmt::format("an albedo this cloth can have, {:.3f} to {:.3f}",
                                         solver.least_albedo(), solver.greatest_albedo()),
-                            fmt::format("{}", wanted));
-        optics.absorption_per_um[band] = *absorption;
+                            fmt::format("{}", albedo));
+        return *absorption;
     }
-}
+
+    const Cloth& cloth_;
+    const kernel::FibreTracer& tracer_;
+    std::span<const FibreOptics> undyed_;
+    const GoniophotometerSettings& settings_;
+    std::map<size_t, ColourSolver> solvers_; ///< by band, or one for all bands
+};
 
 /// Numbers in the shortest form that reads back the same.
 std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroElement& element,
                                             const MicroElementOptions& geometry,
-                                            const std::vector<FibreOptics>& optics,
+                                            const ClothOptics& optics,
                                             const MeasureOptions& options) {
     const GoniophotometerSettings& settings = options.goniophotometer;
     std::map<std::string, std::string> metadata{
@@ -62,6 +82,7 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
         {"cloth", cloth.source},
         {"cloth_hash", fmt::format("fnv1a64:{:016x}", text_hash(cloth.source))},
         {"bands", fmt::format("{}", fmt::join(cloth.bands.names, " "))},
+        {"dispersion", disperses(optics.fibres) ? "yes" : "no"},
         {"seed", fmt::format("{}", settings.seed)},
         {"accuracy_asked", fmt::format("{}", settings.accuracy)},
         {"max_paths", fmt::format("{}", settings.max_paths)},
@@ -84,29 +105,40 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
         {"weft_twist_rounding", fmt::format("{}", element.twist_rounding_weft)},
     };
     const std::vector<YarnKind> kinds = yarn_kinds(cloth);
-    for (size_t k = 0; k < kinds.size(); ++k)
-        metadata[kinds[k].place + "_absorption_per_um"] =
-            fmt::format("{}", fmt::join(optics[k].absorption_per_um, " "));
+    for (size_t k = 0; k < kinds.size(); ++k) {
+        const std::string key = kinds[k].place + "_absorption_per_um";
+        metadata[key] = fmt::format("{}", fmt::join(optics.fibres[k].absorption_per_um, " "));
+        for (const auto& [name, dyes] : optics.colourways)
+            metadata[fmt::format("colourway.{}.{}", name, key)] =
+                fmt::format("{}", fmt::join(dyes[k], " "));
+    }
     return metadata;
 }
 
 } // namespace
 
-std::vector<FibreOptics> cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
-                                      const GoniophotometerSettings& settings) {
+ClothOptics cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
+                         const GoniophotometerSettings& settings) {
     const std::vector<YarnKind> kinds = yarn_kinds(cloth);
-    std::vector<FibreOptics> optics;
-    bool dyed = false;
-    for (const YarnKind& kind : kinds) {
-        optics.push_back(undyed(kind.yarn->fibre, cloth.bands.count()));
-        dyed |= kind.yarn->fibre.color.has_value();
-    }
-    if (!dyed)
-        return optics;
-    const ColourSolver solver(tracer, optics, settings.max_events, settings.seed);
+    ClothOptics optics;
+    for (const YarnKind& kind : kinds)
+        optics.fibres.push_back({kind.yarn->fibre.refractive_index,
+                                 {},
+                                 kind.yarn->fibre.surface_absorption,
+                                 kind.yarn->fibre.roughness});
+    const std::vector<FibreOptics> undyed = optics.fibres;
+    Dyer dyer(cloth, tracer, undyed, settings);
     for (size_t k = 0; k < kinds.size(); ++k)
-        if (kinds[k].yarn->fibre.color)
-            dye(optics[k], kinds[k].yarn->fibre, solver, cloth, kinds[k].place + ".fibre.color");
+        optics.fibres[k].absorption_per_um =
+            dyer.absorption(kinds[k].yarn->fibre, kinds[k].place + ".fibre");
+    for (const auto& [name, dyes] : cloth.colourways)
+        for (size_t k = 0; k < kinds.size(); ++k) {
+            const auto dye = dyes.find(kinds[k].place);
+            optics.colourways[name].push_back(
+                dye == dyes.end() ? optics.fibres[k].absorption_per_um
+                                  : dyer.absorption(dye->second, fmt::format("colourway.{}.{}",
+                                                                             name, dye->first)));
+        }
     return optics;
 }
 
@@ -135,10 +167,10 @@ measure_cloth(const Cloth& cloth, const MeasureOptions& options,
         other.seed = realisation_seed(settings.seed, i);
         realisations.emplace_back(build_micro_element(cloth, other).fibres);
     }
-    const std::vector<FibreOptics> optics = cloth_optics(cloth, realisations[0], settings);
+    const ClothOptics optics = cloth_optics(cloth, realisations[0], settings);
     result.table.metadata = metadata(cloth, result.element, geometry, optics, options);
-    result.counts =
-        measure(realisations, optics, settings, result.table, progress, options.checkpoint);
+    result.counts = measure(realisations, optics.fibres, settings, result.table, progress,
+                            options.checkpoint, optics.colourways);
     return result;
 }
 

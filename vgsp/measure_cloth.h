@@ -27,10 +27,16 @@ struct ClothMeasurement {
     GoniophotometerCounts counts;
 };
 
-/// What the cloth's fibres are made of, by FibreKind: wanted colours become absorption, solved for
-/// in the cloth's own micro-element. FileError (at the cloth's path) for a colour out of reach.
-std::vector<FibreOptics> cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
-                                      const GoniophotometerSettings& settings);
+/// What the cloth's fibres are made of, by their kind (yarn_kinds()), and their other dyes.
+struct ClothOptics {
+    std::vector<FibreOptics> fibres;
+    Colourways colourways;
+};
+
+/// Wanted colours become absorption, solved for in the cloth's own micro-element by one trace for
+/// all of them. FileError (at the cloth's path) for a colour out of reach.
+ClothOptics cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
+                         const GoniophotometerSettings& settings);
 
 /// cloth → micro-element → (colours solved for absorption) → table, with everything that decides
 /// the result in its metadata. One seed serves the fibres, the colours and the paths; the colours

@@ -4,14 +4,14 @@ namespace rapport {
 
 PathBatch trace_batch(const PathTracers& tracers, const BsdfTable& table, size_t direction,
                       size_t group, uint64_t seed, uint64_t first, uint64_t count) {
-    const size_t bands = tracers.at(group, 0).bands;
+    const size_t channels = tracers.at(group, 0).channels;
     PathBatch batch;
     batch.group = group;
     batch.quarters.reserve(count);
-    batch.weights.reserve(count * bands);
-    batch.unscattered.assign(bands, 0.0);
-    batch.capped.assign(bands, 0.0);
-    batch.lost.assign(bands, 0.0);
+    batch.weights.reserve(count * channels);
+    batch.unscattered.assign(channels, 0.0);
+    batch.capped.assign(channels, 0.0);
+    batch.lost.assign(channels, 0.0);
     const IncidentDirection& incident = table.incident[direction];
     const auto add = [&](const IncidentPath& path, const IncidentPathTracer& paths) {
         const FibreLight& light = path.light;
@@ -25,15 +25,15 @@ PathBatch trace_batch(const PathTracers& tracers, const BsdfTable& table, size_t
             const bool transmitted = to_front != (incident.side == Side::front);
             batch.quarters.push_back(static_cast<uint32_t>(
                 (transmitted ? 4 * table.exits.bins() : 0) + table.exits.quarter(light.direction)));
-            for (size_t band = 0; band < bands; ++band)
-                batch.weights.push_back(static_cast<float>(path.weight(band)));
+            for (size_t channel = 0; channel < channels; ++channel)
+                batch.weights.push_back(static_cast<float>(path.weight(channel)));
             return;
         }
-        for (size_t band = 0; band < bands; ++band) {
-            const double weight = path.weight(band);
-            (capped ? batch.capped : batch.unscattered)[band] += weight;
+        for (size_t channel = 0; channel < channels; ++channel) {
+            const double weight = path.weight(channel);
+            (capped ? batch.capped : batch.unscattered)[channel] += weight;
             if (lost)
-                batch.lost[band] += weight;
+                batch.lost[channel] += weight;
         }
     };
     IncidentPath path;

@@ -33,20 +33,21 @@ PathTally::PathTally(const BsdfTable& table, size_t realisations, size_t groups)
     lost_.assign(bands_, 0.0);
 }
 
-void PathTally::add(const PathBatch& batch) {
+void PathTally::add(const PathBatch& batch, size_t dyes) {
     const size_t group_bands = bands_ / groups_, first_band = batch.group * group_bands;
+    const size_t channels = batch.unscattered.size(), first_channel = dyes * group_bands;
     const size_t realisations = realisation_paths_.size();
-    const float* weight = batch.weights.data();
+    const float* weight = batch.weights.data() + first_channel;
     const uint32_t* quarter = batch.quarters.data();
     for (size_t realisation = 0; realisation < realisations; ++realisation) {
         realisation_paths_[realisation] += batch.paths[realisation];
         for (const uint32_t* end = quarter + batch.deposits[realisation]; quarter != end;
-             ++quarter) {
+             ++quarter, weight += channels) {
             const size_t bin = *quarter / 4;
             double mean = 0;
-            for (size_t band = 0; band < group_bands; ++band, ++weight) {
-                sum_[bin * bands_ + first_band + band] += *weight;
-                mean += *weight;
+            for (size_t band = 0; band < group_bands; ++band) {
+                sum_[bin * bands_ + first_band + band] += weight[band];
+                mean += weight[band];
             }
             mean /= static_cast<double>(bands_);
             const double mean2 = square(mean);
@@ -58,9 +59,9 @@ void PathTally::add(const PathBatch& batch) {
         }
     }
     for (size_t band = 0; band < group_bands; ++band) {
-        unscattered_[first_band + band] += batch.unscattered[band];
-        capped_[first_band + band] += batch.capped[band];
-        lost_[first_band + band] += batch.lost[band];
+        unscattered_[first_band + band] += batch.unscattered[first_channel + band];
+        capped_[first_band + band] += batch.capped[first_channel + band];
+        lost_[first_band + band] += batch.lost[first_channel + band];
     }
     counts_ += batch.counts;
 }
@@ -169,31 +170,30 @@ double PathTally::realisation_error() const {
     return std::sqrt(scale() * std::max(spread, 0.0) / r);
 }
 
-void PathTally::write(BsdfTable& table, size_t direction) const {
+void PathTally::write(Scattering& scattering, size_t direction) const {
     const double n = static_cast<double>(paths());
-    const size_t bins = table.exits.bins();
+    const size_t bins = solid_angle_.size();
     std::vector<double> scattered(bands_, 0.0);
-    for (size_t bin = 0; bin < 2 * bins; ++bin)
+    for (size_t bin = 0; bin < bins; ++bin)
         for (size_t band = 0; band < bands_; ++band) {
             const double flux = sum_[bin * bands_ + band] / n;
             scattered[band] += flux;
-            table.at(direction, bin < bins ? 0 : 1, bin % bins, band) =
+            scattering.intensity[(direction * bins + bin) * bands_ + band] =
                 static_cast<float>(flux / solid_angle_[bin]);
         }
     for (size_t band = 0; band < bands_; ++band) {
         const size_t i = direction * bands_ + band;
         const double unscattered = unscattered_[band] / n, capped = capped_[band] / n;
-        table.unscattered[i] = static_cast<float>(unscattered);
-        table.capped[i] = static_cast<float>(capped);
-        table.lost[i] = static_cast<float>(lost_[band] / n);
-        table.absorbed[i] =
+        scattering.unscattered[i] = static_cast<float>(unscattered);
+        scattering.capped[i] = static_cast<float>(capped);
+        scattering.lost[i] = static_cast<float>(lost_[band] / n);
+        scattering.absorbed[i] =
             static_cast<float>(std::max(0.0, 1 - scattered[band] - unscattered - capped));
     }
-    table.accuracy[direction] = static_cast<float>(accuracy());
-    table.bin_error[direction] = static_cast<float>(bin_error());
-    if (!table.realisation_error.empty())
-        table.realisation_error[direction] = static_cast<float>(realisation_error());
-    table.paths[direction] = paths();
+    scattering.accuracy[direction] = static_cast<float>(accuracy());
+    scattering.bin_error[direction] = static_cast<float>(bin_error());
+    if (!scattering.realisation_error.empty())
+        scattering.realisation_error[direction] = static_cast<float>(realisation_error());
 }
 
 namespace {

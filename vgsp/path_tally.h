@@ -22,8 +22,8 @@ struct PathTracers {
 struct PathBatch {
     size_t group = 0;
     std::vector<uint32_t> quarters; ///< block·4B + quarter of a bin of each scattered path
-    std::vector<float> weights;     ///< [path, band of the group]
-    std::vector<double> unscattered, capped, lost; ///< per band of the group, sums of weights
+    std::vector<float> weights;     ///< [path, channel], channels being sets of dyes × bands
+    std::vector<double> unscattered, capped, lost; ///< per channel, sums of weights
     std::vector<uint64_t> paths, deposits;         ///< of each realisation, in order
     GoniophotometerCounts counts;
 };
@@ -33,13 +33,13 @@ struct PathBatch {
 PathBatch trace_batch(const PathTracers& tracers, const BsdfTable& table, size_t direction,
                       size_t group, uint64_t seed, uint64_t first, uint64_t count);
 
-/// Sums over the paths of one incident direction, in double precision.
+/// Sums over the paths of one incident direction in one set of dyes, in double precision.
 class PathTally {
   public:
     PathTally(const BsdfTable& table, size_t realisations, size_t groups);
 
     /// To be called in the order of the paths, for equal sums from equal seeds.
-    void add(const PathBatch& batch);
+    void add(const PathBatch& batch, size_t dyes = 0);
     const GoniophotometerCounts& counts() const { return counts_; }
     /// Paths in each group of bands.
     uint64_t paths() const { return counts_.paths / groups_; }
@@ -60,7 +60,7 @@ class PathTally {
     double realisation_error() const;
 
     /// Fills the arrays of one direction.
-    void write(BsdfTable& table, size_t direction) const;
+    void write(Scattering& scattering, size_t direction) const;
 
     /// All sums in a fixed order, for a checkpoint, and back.
     std::vector<double> sums() const;

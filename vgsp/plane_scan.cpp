@@ -24,17 +24,20 @@ constexpr uint64_t kFirstPilotPath = kMostPaths; ///< the pilot's numbers come a
 
 /// Sums over the paths that the detector sees.
 struct Tally {
-    explicit Tally(size_t bands)
-        : sum(kBins * bands), sum2(kBins * bands), mean(kBins), mean2(kBins) {}
+    Tally(size_t bands, size_t groups)
+        : bands(bands), groups(groups), sum(kBins * bands), sum2(kBins * bands), mean(kBins),
+          mean2(kBins) {}
 
-    void deposit(size_t bin, std::span<const double> weights) {
+    /// `weights` are those of the bands of a group.
+    void deposit(size_t bin, size_t group, std::span<const double> weights) {
+        const size_t first = bin * bands + group * weights.size();
         double total = 0;
         for (size_t band = 0; band < weights.size(); ++band) {
-            sum[bin * weights.size() + band] += weights[band];
-            sum2[bin * weights.size() + band] += square(weights[band]);
+            sum[first + band] += weights[band];
+            sum2[first + band] += square(weights[band]);
             total += weights[band];
         }
-        const double average = total / static_cast<double>(weights.size());
+        const double average = total / static_cast<double>(bands);
         mean[bin] += average;
         mean2[bin] += square(average);
     }
@@ -49,15 +52,27 @@ struct Tally {
         paths += other.paths;
         return *this;
     }
+    /// Of one path's weight in a bin, in the mean over the bands. Groups of bands are traced apart,
+    /// so that their variances add.
+    double variance(size_t bin) const {
+        const double n = static_cast<double>(paths);
+        double squared_means = 0;
+        for (size_t group = 0; group < groups; ++group) {
+            const double* first = &sum[bin * bands + group * (bands / groups)];
+            const double total = std::accumulate(first, first + bands / groups, 0.0);
+            squared_means += square(total / static_cast<double>(bands) / n);
+        }
+        return std::max(0.0, mean2[bin] / n - squared_means);
+    }
     /// ε²·N: what ε² would be after one path.
     double error_of_one_path() const {
         const double n = static_cast<double>(paths);
-        double total = 0, variance = 0;
+        double total = 0, sum_of_variances = 0;
         for (int bin = 0; bin < kBins; ++bin) {
             total += mean[bin] / n;
-            variance += (mean2[bin] / n - square(mean[bin] / n)) * n / (n - 1);
+            sum_of_variances += variance(bin) * n / (n - 1);
         }
-        return total > 0 ? kBins * std::max(variance, 0.0) / square(total) : 0.0;
+        return total > 0 ? kBins * sum_of_variances / square(total) : 0.0;
     }
     /// How many paths of equal weight would tell as much as those seen (Kish's effective size).
     double hits() const {
@@ -66,9 +81,10 @@ struct Tally {
     }
     double accuracy() const { return std::sqrt(error_of_one_path() / static_cast<double>(paths)); }
 
+    size_t bands, groups;            ///< of bands that share paths
     std::vector<double> sum, sum2;   ///< [bin, band], of weights and their squares
     std::vector<double> mean, mean2; ///< [bin], of the weights' means over the bands
-    uint64_t paths = 0;
+    uint64_t paths = 0;              ///< in each group
 };
 
 /// The bin that sees light travelling along `direction`, if any does.
@@ -88,12 +104,15 @@ std::optional<size_t> seen_in(const glm::dvec3& direction, const IncidentDirecti
 /// Traces one direction's paths.
 class Detector {
   public:
-    Detector(const IncidentPathTracer& paths, const IncidentDirection& incident, size_t number,
-             uint64_t seed)
-        : paths_(paths), incident_(incident), number_(number), seed_(seed) {}
+    /// A tracer for each group of bands that share paths.
+    Detector(std::span<const IncidentPathTracer> groups, const IncidentDirection& incident,
+             size_t number, uint64_t seed)
+        : groups_(groups), incident_(incident), number_(number), seed_(seed) {}
+
+    Tally empty_tally() const { return {groups_.size() * groups_[0].channels, groups_.size()}; }
 
     void trace(uint64_t first, uint64_t count, Tally& tally) const {
-        std::vector<Tally> batches((count + kBatchPaths - 1) / kBatchPaths, Tally(paths_.bands));
+        std::vector<Tally> batches((count + kBatchPaths - 1) / kBatchPaths, empty_tally());
         parallel_for(batches.size(), [&](size_t i) {
             const uint64_t from = i * kBatchPaths, to = std::min(count, from + kBatchPaths);
             trace_batch(first + from, first + to, batches[i]);
@@ -107,7 +126,7 @@ class Detector {
         const uint64_t most = settings.max_paths > 0 ? settings.max_paths : kMostPaths;
         if (most <= kPilotPaths)
             return most;
-        Tally pilot(paths_.bands);
+        Tally pilot = empty_tally();
         while (pilot.paths < kMostPilotPaths && pilot.hits() < kPilotHits)
             trace(kFirstPilotPath + pilot.paths, kPilotPaths, pilot);
         if (pilot.hits() == 0)
@@ -122,23 +141,28 @@ class Detector {
 
   private:
     void trace_batch(uint64_t first, uint64_t end, Tally& tally) const {
+        for (size_t group = 0; group < groups_.size(); ++group)
+            trace_group(group, first, end, tally);
+        tally.paths = end - first;
+    }
+
+    void trace_group(size_t group, uint64_t first, uint64_t end, Tally& tally) const {
         IncidentPath path;
-        std::vector<double> weights(paths_.bands);
+        std::vector<double> weights(groups_[group].channels);
         for (uint64_t k = first; k < end; ++k) {
-            CounterRng rng(seed_, Purpose::incident_path, number_, k);
-            paths_.trace(incident_, rng, path);
+            CounterRng rng(seed_, Purpose::incident_path, number_ * groups_.size() + group, k);
+            groups_[group].trace(incident_, rng, path);
             if (path.fate != PathFate::scattered)
                 continue;
             if (const std::optional<size_t> bin = seen_in(path.light.direction, incident_)) {
                 for (size_t band = 0; band < weights.size(); ++band)
                     weights[band] = path.weight(band);
-                tally.deposit(*bin, weights);
+                tally.deposit(*bin, group, weights);
             }
         }
-        tally.paths = end - first;
     }
 
-    const IncidentPathTracer& paths_;
+    std::span<const IncidentPathTracer> groups_;
     const IncidentDirection& incident_;
     size_t number_;
     uint64_t seed_;
@@ -159,12 +183,15 @@ PlaneScan result_of(const Tally& tally, const IncidentDirection& incident, const
         });
         return result;
     };
+    std::vector<double> mean_error;
+    for (size_t bin = 0; bin < kBins; ++bin)
+        mean_error.push_back(std::sqrt(tally.variance(bin) / n) / solid_angle);
     return {incident,
             bands,
             intensity(tally.sum),
             error(tally.sum, tally.sum2),
             intensity(tally.mean),
-            error(tally.mean, tally.mean2),
+            mean_error,
             tally.accuracy(),
             tally.paths};
 }
@@ -182,8 +209,12 @@ scan_planes(const kernel::FibreTracer& tracer, std::span<const FibreOptics> opti
         throw std::invalid_argument("the accuracy asked for is not positive");
     if (settings.max_events < 1)
         throw std::invalid_argument("a path is allowed no events");
-    const std::vector<FibreMedium> media = fibre_media(optics, bands.count(), tracer);
-    const IncidentPathTracer paths{tracer, media, bands.count(), settings.max_events, true};
+    const std::vector<std::vector<FibreMedium>> media =
+        media_of_groups(optics, bands.count(), tracer);
+    std::vector<IncidentPathTracer> groups;
+    for (const std::vector<FibreMedium>& of_group : media)
+        groups.push_back(
+            {tracer, of_group, bands.count() / media.size(), settings.max_events, true});
 
     const auto start = std::chrono::steady_clock::now();
     const auto seconds = [&] {
@@ -193,10 +224,10 @@ scan_planes(const kernel::FibreTracer& tracer, std::span<const FibreOptics> opti
     std::vector<PlaneScan> scans;
     double worst = 0, traced = 0;
     for (size_t d = 0; d < incident.size(); ++d) {
-        const Detector detector(paths, incident[d], d, settings.seed);
+        const Detector detector(groups, incident[d], d, settings.seed);
         const uint64_t planned = detector.plan(settings);
         const double until = settings.max_seconds * (static_cast<double>(d) + 1) / directions;
-        Tally tally(bands.count());
+        Tally tally = detector.empty_tally();
         while (tally.paths < planned &&
                (tally.paths == 0 || settings.max_seconds <= 0 || seconds() < until)) {
             const uint64_t count = std::min(kChunkPaths, planned - tally.paths);

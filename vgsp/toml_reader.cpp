@@ -145,6 +145,13 @@ std::vector<double> TomlReader::numbers(std::string_view key, const Domain& doma
     return numbers_of(key, domain, count, count, fmt::format("an array of {} numbers", count));
 }
 
+std::vector<double> TomlReader::numbers_or_one(std::string_view key, const Domain& domain,
+                                               size_t count) const {
+    if (has(key) && table_.get(key)->is_array())
+        return numbers(key, domain, count);
+    return {number(key, domain)};
+}
+
 std::vector<double> TomlReader::numbers_from(std::string_view key, const Domain& domain,
                                              size_t least) const {
     return numbers_of(key, domain, least, SIZE_MAX,

@@ -45,11 +45,13 @@ class TomlReader {
     int whole_number(std::string_view key, int low, int high) const;
     /// `count` numbers.
     std::vector<double> numbers(std::string_view key, const Domain& domain, size_t count) const;
+    /// The same, or one number for all.
+    std::vector<double> numbers_or_one(std::string_view key, const Domain& domain,
+                                       size_t count) const;
     /// Any number of numbers, at least `least`.
     std::vector<double> numbers_from(std::string_view key, const Domain& domain,
                                      size_t least) const;
     std::vector<std::string> texts(std::string_view key) const;
-    bool is_array(std::string_view key) const { return table_.get(key)->is_array(); }
 
     /// At the value of `key`, or at the table if it has no such key.
     [[noreturn]] void fail(std::string_view key, const std::string& expected,

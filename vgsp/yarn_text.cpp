@@ -29,16 +29,19 @@ constexpr int kMaxPlies = 6;
 
 toml::table fibre_table(const FibreSpec& fibre) {
     toml::table table{{"diameter_um", fibre.diameter_um},
-                      {"refractive_index", fibre.refractive_index},
                       {"surface_absorption", fibre.surface_absorption}};
+    const std::vector<double>& index = fibre.refractive_index.values();
+    if (index.size() == 1)
+        table.insert("refractive_index", index[0]);
+    else
+        table.insert("refractive_index", toml_array(index));
     if (fibre.density_g_cm3)
         table.insert("density_g_cm3", *fibre.density_g_cm3);
     if (fibre.diameter_variation != 0)
         table.insert("diameter_variation", fibre.diameter_variation);
-    if (fibre.absorption_per_um)
-        table.insert("absorption_per_um", toml_array(*fibre.absorption_per_um));
-    if (fibre.color)
-        table.insert("color", toml_array(*fibre.color));
+    if (fibre.roughness != 0)
+        table.insert("roughness", fibre.roughness);
+    add_dye(fibre, table);
     return table;
 }
 
@@ -54,7 +57,8 @@ std::string_view either(const TomlReader& file, std::string_view first, std::str
 
 FibreSpec read_fibre(const TomlReader& file, size_t bands) {
     file.allow_only({"diameter_um", "dtex", "density_g_cm3", "diameter_variation",
-                     "refractive_index", "absorption_per_um", "color", "surface_absorption"});
+                     "refractive_index", "absorption_per_um", "color", "surface_absorption",
+                     "roughness"});
     FibreSpec fibre;
     if (file.has("density_g_cm3"))
         fibre.density_g_cm3 = file.number("density_g_cm3", kDensity);
@@ -68,17 +72,10 @@ FibreSpec read_fibre(const TomlReader& file, size_t bands) {
                       fmt::format("{:g} µm", fibre.diameter_um));
     }
     fibre.diameter_variation = file.number("diameter_variation", kVariation, 0);
-    fibre.refractive_index = file.number("refractive_index", kRefractiveIndex);
-    if (file.has("absorption_per_um") && file.has("color"))
-        file.fail("color", "one of 'absorption_per_um' and 'color'", "both");
-    if (file.has("color"))
-        fibre.color = file.numbers("color", kColor, bands);
-    if (file.has("absorption_per_um"))
-        fibre.absorption_per_um =
-            file.is_array("absorption_per_um")
-                ? file.numbers("absorption_per_um", kAbsorption, bands)
-                : std::vector<double>(bands, file.number("absorption_per_um", kAbsorption));
+    fibre.refractive_index = file.numbers_or_one("refractive_index", kRefractiveIndex, bands);
+    static_cast<Dye&>(fibre) = read_dye(file, bands);
     fibre.surface_absorption = file.number("surface_absorption", kShare, 0);
+    fibre.roughness = file.number("roughness", kShare, 0);
     return fibre;
 }
 
@@ -108,6 +105,26 @@ Irregularity read_irregularity(const TomlReader& file) {
 }
 
 } // namespace
+
+Dye read_dye(const TomlReader& file, size_t bands) {
+    Dye dye;
+    if (file.has("absorption_per_um") && file.has("color"))
+        file.fail("color", "one of 'absorption_per_um' and 'color'", "both");
+    if (file.has("color"))
+        dye.color = file.numbers("color", kColor, bands);
+    if (file.has("absorption_per_um")) {
+        dye.absorption_per_um = file.numbers_or_one("absorption_per_um", kAbsorption, bands);
+        dye.absorption_per_um->resize(bands, dye.absorption_per_um->front());
+    }
+    return dye;
+}
+
+void add_dye(const Dye& dye, toml::table& table) {
+    if (dye.absorption_per_um)
+        table.insert("absorption_per_um", toml_array(*dye.absorption_per_um));
+    if (dye.color)
+        table.insert("color", toml_array(*dye.color));
+}
 
 YarnSpec read_yarn(const TomlReader& file, std::vector<std::string_view> keys, size_t bands) {
     constexpr std::array kParallelKeys{"width_um", "height_um"};

@@ -35,6 +35,9 @@ std::string describe(Type type, const Shape& shape) {
                        fmt::join(shape, ", "));
 }
 
+/// Before the names of the fields of colourway number `i`.
+std::string colourway_prefix(size_t i) { return fmt::format("colourway_{}_", i); }
+
 /// Turns the fields of one file into a table, or says what is wrong with which of them.
 class Reader {
   public:
@@ -49,7 +52,7 @@ class Reader {
         read_incident();
         if (has("grid_theta") || has("grid_phi") || has("grid_index"))
             read_grid();
-        read_shares();
+        read_scattering();
         return std::move(table_);
     }
 
@@ -99,12 +102,17 @@ class Reader {
         return value;
     }
 
-    void read_bands() {
-        const nlohmann::json names = json("band_names");
+    std::vector<std::string> names_in(const std::string& name) const {
+        const nlohmann::json names = json(name);
         const auto is_string = [](const nlohmann::json& v) { return v.is_string(); };
         if (!names.is_array() || names.empty() || !std::ranges::all_of(names, is_string))
-            fail("band_names", "a JSON array of names", names.type_name());
-        table_.bands.names = names.get<std::vector<std::string>>();
+            fail(name, "a JSON array of names", names.type_name());
+        return names.get<std::vector<std::string>>();
+    }
+
+    void read_bands() {
+        const std::vector<std::string> names = names_in("band_names");
+        table_.bands.names = names;
         if (!has("band_edges_nm")) {
             if (table_.bands != Bands{})
                 fail("band_names", "R, G, B where there is no band_edges_nm",
@@ -218,18 +226,32 @@ class Reader {
         return values;
     }
 
-    void read_shares() {
+    void read_scattering() {
+        table_.paths = array<uint64_t>("paths", {table_.directions()});
+        if (has("colourways")) {
+            const std::vector<std::string> names = names_in("colourways");
+            for (size_t i = 0; i < names.size(); ++i) {
+                read_shares(colourway_prefix(i));
+                if (!table_.colourways.emplace(names[i], std::move(scattering())).second)
+                    fail("colourways", "different names", "\"" + names[i] + "\" twice");
+            }
+        }
+        read_shares("");
+    }
+
+    /// Those whose fields begin with `prefix`.
+    void read_shares(const std::string& prefix) {
         const size_t directions = table_.directions(), bands = table_.bands.count();
-        table_.intensity = shares("intensity", {directions, 2, table_.exits.bins(), bands});
-        table_.unscattered = shares("unscattered", {directions, bands});
-        table_.absorbed = shares("absorbed", {directions, bands});
-        table_.capped = shares("capped", {directions, bands});
-        table_.lost = shares("lost", {directions, bands});
-        table_.accuracy = shares("accuracy", {directions});
-        table_.bin_error = shares("bin_error", {directions});
+        table_.intensity =
+            shares(prefix + "intensity", {directions, 2, table_.exits.bins(), bands});
+        table_.unscattered = shares(prefix + "unscattered", {directions, bands});
+        table_.absorbed = shares(prefix + "absorbed", {directions, bands});
+        table_.capped = shares(prefix + "capped", {directions, bands});
+        table_.lost = shares(prefix + "lost", {directions, bands});
+        table_.accuracy = shares(prefix + "accuracy", {directions});
+        table_.bin_error = shares(prefix + "bin_error", {directions});
         if (has("realisation_error"))
-            table_.realisation_error = shares("realisation_error", {directions});
-        table_.paths = array<uint64_t>("paths", {directions});
+            table_.realisation_error = shares(prefix + "realisation_error", {directions});
         for (size_t d = 0; d < directions; ++d) {
             const auto reflected = table_.reflectance(d), transmitted = table_.transmittance(d);
             for (size_t band = 0; band < bands; ++band) {
@@ -237,17 +259,37 @@ class Reader {
                 const double sum = reflected[band] + transmitted[band] + table_.unscattered[i] +
                                    table_.absorbed[i] + table_.capped[i];
                 if (!(std::abs(sum - 1) <= kEnergyTolerance))
-                    fail(fmt::format("intensity[{}]", d),
+                    fail(fmt::format("{}intensity[{}]", prefix, d),
                          fmt::format("shares of band {} that sum to 1", table_.bands.names[band]),
                          fmt::format("{:.6g}", sum));
             }
         }
     }
 
+    Scattering& scattering() { return table_; }
+
     std::string path_;
     TensorFile fields_;
     BsdfTable table_;
 };
+
+/// `scattering` is laid out as `table` is.
+void add_scattering(TensorFile& fields, const std::string& prefix, const Scattering& scattering,
+                    const BsdfTable& table) {
+    const uint64_t directions = table.directions(), bands = table.bands.count();
+    const auto add = [&](const char* name, const Shape& shape, const std::vector<float>& values) {
+        fields[prefix + name] = TensorField::of<float>(shape, values);
+    };
+    add("intensity", {directions, 2, table.exits.bins(), bands}, scattering.intensity);
+    add("unscattered", {directions, bands}, scattering.unscattered);
+    add("absorbed", {directions, bands}, scattering.absorbed);
+    add("capped", {directions, bands}, scattering.capped);
+    add("lost", {directions, bands}, scattering.lost);
+    add("accuracy", {directions}, scattering.accuracy);
+    add("bin_error", {directions}, scattering.bin_error);
+    if (!scattering.realisation_error.empty())
+        add("realisation_error", {directions}, scattering.realisation_error);
+}
 
 } // namespace
 
@@ -288,16 +330,15 @@ void write_table(const BsdfTable& table, const std::filesystem::path& path) {
         fields["grid_phi"] = TensorField::of<double>({phis}, table.grid_phi);
         fields["grid_index"] = TensorField::of<uint32_t>({2, thetas, phis}, table.grid_index);
     }
-    fields["intensity"] =
-        TensorField::of<float>({directions, 2, mesh.bins(), bands}, table.intensity);
-    fields["unscattered"] = TensorField::of<float>({directions, bands}, table.unscattered);
-    fields["absorbed"] = TensorField::of<float>({directions, bands}, table.absorbed);
-    fields["capped"] = TensorField::of<float>({directions, bands}, table.capped);
-    fields["lost"] = TensorField::of<float>({directions, bands}, table.lost);
-    fields["accuracy"] = TensorField::of<float>({directions}, table.accuracy);
-    fields["bin_error"] = TensorField::of<float>({directions}, table.bin_error);
-    if (!table.realisation_error.empty())
-        fields["realisation_error"] = TensorField::of<float>({directions}, table.realisation_error);
+    add_scattering(fields, "", table, table);
+    if (!table.colourways.empty()) {
+        std::vector<std::string> names;
+        for (const auto& [name, scattering] : table.colourways) {
+            add_scattering(fields, colourway_prefix(names.size()), scattering, table);
+            names.push_back(name);
+        }
+        fields["colourways"] = json_text(names);
+    }
     fields["paths"] = TensorField::of<uint64_t>({directions}, table.paths);
     write_tensor_file(fields, path);
 }

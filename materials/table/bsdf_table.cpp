@@ -1,6 +1,11 @@
 #include "materials/table/bsdf_table.h"
 
+#include "renderer/core/error.h"
+
 #include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <ranges>
 #include <stdexcept>
 
 namespace rapport {
@@ -35,6 +40,16 @@ size_t intensity_index(const BsdfTable& table, size_t direction, int block, size
     return ((direction * 2 + block) * table.exits.bins() + bin) * table.bands.count() + band;
 }
 
+MeasurementError error_of(const Scattering& scattering, size_t direction, size_t bands) {
+    MeasurementError error{scattering.accuracy[direction], scattering.bin_error[direction],
+                           std::nullopt, 0};
+    if (!scattering.realisation_error.empty())
+        error.realisation = scattering.realisation_error[direction];
+    const auto first = scattering.capped.begin() + static_cast<ptrdiff_t>(direction * bands);
+    error.discarded = *std::max_element(first, first + static_cast<ptrdiff_t>(bands));
+    return error;
+}
+
 } // namespace
 
 float& BsdfTable::at(size_t direction, int block, size_t bin, size_t band) {
@@ -54,28 +69,43 @@ std::vector<double> BsdfTable::transmittance(size_t direction) const {
 }
 
 MeasurementError BsdfTable::error(size_t direction) const {
-    MeasurementError error{accuracy[direction], bin_error[direction], std::nullopt, 0};
-    if (!realisation_error.empty())
-        error.realisation = realisation_error[direction];
-    const auto first = capped.begin() + static_cast<ptrdiff_t>(direction * bands.count());
-    error.discarded = *std::max_element(first, first + static_cast<ptrdiff_t>(bands.count()));
-    return error;
+    return error_of(*this, direction, bands.count());
 }
 
 MeasurementError BsdfTable::largest_error() const {
     MeasurementError largest;
-    for (size_t d = 0; d < directions(); ++d) {
-        const MeasurementError here = error(d);
-        largest.noise = std::max(largest.noise, here.noise);
-        largest.bins = std::max(largest.bins, here.bins);
-        largest.realisation = std::max(largest.realisation, here.realisation); // none is least
-        largest.discarded = std::max(largest.discarded, here.discarded);
-    }
+    const auto add = [&](const Scattering& scattering) {
+        for (size_t d = 0; d < directions(); ++d) {
+            const MeasurementError here = error_of(scattering, d, bands.count());
+            largest.noise = std::max(largest.noise, here.noise);
+            largest.bins = std::max(largest.bins, here.bins);
+            largest.realisation = std::max(largest.realisation, here.realisation); // none is least
+            largest.discarded = std::max(largest.discarded, here.discarded);
+        }
+    };
+    add(*this);
+    for (const auto& [name, scattering] : colourways)
+        add(scattering);
     return largest;
 }
 
-float BsdfTable::largest_accuracy() const {
-    return accuracy.empty() ? 0 : *std::ranges::max_element(accuracy);
+float BsdfTable::largest_accuracy() const { return static_cast<float>(largest_error().noise); }
+
+BsdfTable BsdfTable::in_colourway(const std::string& name, const std::string& file) const {
+    BsdfTable table = *this;
+    table.colourways.clear();
+    if (name.empty())
+        return table;
+    const auto found = colourways.find(name);
+    if (found == colourways.end())
+        throw FileError(
+            file, "",
+            colourways.empty()
+                ? "no colourway's name, the cloth having none"
+                : fmt::format("a colourway: {}", fmt::join(std::views::keys(colourways), ", ")),
+            fmt::format("\"{}\"", name));
+    static_cast<Scattering&>(table) = found->second;
+    return table;
 }
 
 BsdfTable make_full_table(const Bands& bands, bool front, bool back) {

@@ -31,11 +31,26 @@ struct MeasurementError {
     double discarded = 0; ///< share of the incident flux that was given up, in the worst band
 };
 
+/// What a table holds of the light that is scattered by fibres in one set of dyes; BsdfTable tells
+/// of the order.
+struct Scattering {
+    std::vector<float> intensity;   ///< [D, 2, B, bands]
+    std::vector<float> unscattered; ///< [D, bands], share of incident flux that met no event
+    std::vector<float> absorbed;    ///< [D, bands]
+    std::vector<float> capped;      ///< [D, bands], given up: out of events, or lost
+    std::vector<float> lost;        ///< [D, bands], the part of `capped` lost among the fibres
+
+    std::vector<float> accuracy;  ///< [D], MeasurementError::noise
+    std::vector<float> bin_error; ///< [D], MeasurementError::bins
+    /// [D], MeasurementError::realisation; empty for a single realisation.
+    std::vector<float> realisation_error;
+};
+
 /// A cloth's measured BSDF. What is stored is intensity I = f·cosθo [1/sr], per unit of incident
 /// flux: bin means over a fixed mesh of exit directions, for single points of incidence.
 /// Index order: D incident directions × 2 (0 = reflected to the incident side, 1 = transmitted)
 /// × B bins of a hemisphere × bands.
-struct BsdfTable {
+struct BsdfTable : Scattering {
     Bands bands;
     DirectionMesh exits;
     std::vector<IncidentDirection> incident;
@@ -47,17 +62,9 @@ struct BsdfTable {
     std::vector<uint32_t> grid_index; ///< [2, T, P]; kAbsent where a side was not measured
     static constexpr uint32_t kAbsent = ~0u;
 
-    std::vector<float> intensity;   ///< [D, 2, B, bands]
-    std::vector<float> unscattered; ///< [D, bands], share of incident flux that met no event
-    std::vector<float> absorbed;    ///< [D, bands]
-    std::vector<float> capped;      ///< [D, bands], given up: out of events, or lost
-    std::vector<float> lost;        ///< [D, bands], the part of `capped` lost among the fibres
-    std::vector<uint64_t> paths;    ///< [D]
-
-    std::vector<float> accuracy;  ///< [D], MeasurementError::noise
-    std::vector<float> bin_error; ///< [D], MeasurementError::bins
-    /// [D], MeasurementError::realisation; empty for a single realisation.
-    std::vector<float> realisation_error;
+    std::vector<uint64_t> paths; ///< [D]
+    /// The same paths in other dyes, by the colourway's name.
+    std::map<std::string, Scattering> colourways;
 
     /// Everything that decides the result (cloth source and hash, seed, parameters, program
     /// version), as text; never the time, the threads or a path.
@@ -71,9 +78,12 @@ struct BsdfTable {
     std::vector<double> reflectance(size_t direction) const;
     std::vector<double> transmittance(size_t direction) const;
     MeasurementError error(size_t direction) const;
-    /// The largest of each over the directions: a table is as good as its worst.
+    /// The largest of each over the directions and colourways: a table is as good as its worst.
     MeasurementError largest_error() const;
     float largest_accuracy() const; ///< its ε; 0 for a table without directions
+    /// The table of that colourway alone, or, without a name, of the cloth's own dyes. FileError
+    /// (`file` for the message) for a name that it does not have.
+    BsdfTable in_colourway(const std::string& name, const std::string& file) const;
 };
 
 /// Lays out a table's directions and sizes its arrays (zeros).
@@ -96,7 +106,8 @@ BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> 
 /// (a JSON array), `metadata` (a JSON object) and `description`. Angles are in radians, as in the
 /// other tables of this container, so that they survive the round trip bit for bit.
 /// `grid_*` are absent from a partial table, `realisation_error` from one of a single realisation.
-/// Fields of other names are ignored.
+/// Where there are colourways, `colourways` has their names (a JSON array), and the fields of the
+/// first are `colourway_0_intensity` and so on. Fields of other names are ignored.
 void write_table(const BsdfTable& table, const std::filesystem::path& path);
 BsdfTable read_table(const std::filesystem::path& path);
 

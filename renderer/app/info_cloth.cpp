@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <iterator>
+#include <ranges>
 
 namespace rapport {
 namespace {
@@ -70,6 +71,11 @@ std::string yarn_text(const YarnSpec& yarn) {
         text +=
             ", plied" + (yarn.ply_twist_per_m == 0 ? std::string(" without twist")
                                                    : twist_text(yarn.ply_twist_per_m).substr(1));
+    if (yarn.fibre.refractive_index.differs())
+        text += fmt::format(", of index {} by band",
+                            fmt::join(yarn.fibre.refractive_index.values(), ", "));
+    if (yarn.fibre.roughness > 0)
+        text += fmt::format(", rough by {:g}", yarn.fibre.roughness);
     return text + irregularity_text(yarn);
 }
 
@@ -126,6 +132,14 @@ Info cloth_info(const std::filesystem::path& path) {
                     element.weft_cover, element.crimp_weft);
     for (const NamedYarn& yarn : cloth.yarns)
         info.text += fmt::format("yarn {}: {}\n", yarn.name, yarn_text(yarn.yarn));
+    for (const auto& [name, dyes] : cloth.colourways) {
+        info.json["colourways"].push_back(name);
+        info.text +=
+            fmt::format("colourway {}: {}\n", name,
+                        dyes.empty() ? "as it is"
+                                     : fmt::format("{} in other dyes",
+                                                   fmt::join(std::views::keys(dyes), ", ")));
+    }
     fmt::format_to(std::back_inserter(info.text),
                    "micro-element: {:.4g} × {:.4g} µm, {:.4g} µm thick, {} fibres, {} segments, "
                    "cover factor {:.3f}, {:.2f} % of the fibre surface overlaps\n",

@@ -28,16 +28,51 @@ nlohmann::ordered_json error_json(const MeasurementError& error) {
     return json;
 }
 
-} // namespace
-
-Info table_info(const std::filesystem::path& path) {
-    const BsdfTable table = read_table(path);
+/// What a table says in one set of dyes of light from each direction.
+nlohmann::ordered_json incident_json(const BsdfTable& table) {
     const size_t bands = table.bands.count();
     const auto row = [&](const std::vector<float>& values, size_t direction) {
         return std::vector<double>(values.begin() + direction * bands,
                                    values.begin() + (direction + 1) * bands);
     };
+    auto incident = nlohmann::ordered_json::array();
+    for (size_t d = 0; d < table.directions(); ++d) {
+        const IncidentDirection& from = table.incident[d];
+        incident.push_back({{"side", from.side == Side::front ? "front" : "back"},
+                            {"theta", degrees(from.theta)},
+                            {"phi", degrees(from.phi)},
+                            {"R", table.reflectance(d)},
+                            {"T", table.transmittance(d)},
+                            {"unscattered", row(table.unscattered, d)},
+                            {"absorbed", row(table.absorbed, d)},
+                            {"capped", row(table.capped, d)},
+                            {"lost", row(table.lost, d)},
+                            {"accuracy", table.accuracy[d]},
+                            {"errors", error_json(table.error(d))},
+                            {"paths", table.paths[d]}});
+    }
+    return incident;
+}
 
+std::string incident_text(const nlohmann::ordered_json& incident) {
+    const auto numbers = [](const nlohmann::ordered_json& values) {
+        return fmt::format("{:.4f}", fmt::join(values.get<std::vector<double>>(), " "));
+    };
+    std::string text;
+    for (const nlohmann::ordered_json& from : incident)
+        text += fmt::format("{:5} θ {:4.1f}° φ {:5.1f}°: R {}, T {}, unscattered {}, absorbed {}, "
+                            "accuracy {:.4f}\n",
+                            from["side"].get<std::string>(), from["theta"].get<double>(),
+                            from["phi"].get<double>(), numbers(from["R"]), numbers(from["T"]),
+                            numbers(from["unscattered"]), numbers(from["absorbed"]),
+                            from["accuracy"].get<double>());
+    return text;
+}
+
+} // namespace
+
+Info table_info(const std::filesystem::path& path) {
+    const BsdfTable table = read_table(path);
     Info info;
     info.json["kind"] = "bsdf";
     info.json["accuracy"] = table.largest_accuracy();
@@ -47,36 +82,24 @@ Info table_info(const std::filesystem::path& path) {
     info.json["bands"] = table.bands.names;
     info.json["partial"] = table.partial();
     info.json["metadata"] = table.metadata;
-    info.text = fmt::format("BSDF table{}: {} incident directions × {} exit bins × {} bands ({}), "
-                            "accuracy {:.4f}, {} paths\n",
-                            table.partial() ? " (partial)" : "", table.directions(),
-                            2 * table.exits.bins(), bands, fmt::join(table.bands.names, ", "),
-                            table.largest_accuracy(), info.json["paths"].get<uint64_t>());
+    info.text =
+        fmt::format("BSDF table{}: {} incident directions × {} exit bins × {} bands ({}), "
+                    "accuracy {:.4f}, {} paths\n",
+                    table.partial() ? " (partial)" : "", table.directions(), 2 * table.exits.bins(),
+                    table.bands.count(), fmt::join(table.bands.names, ", "),
+                    table.largest_accuracy(), info.json["paths"].get<uint64_t>());
     info.text += error_text(table.largest_error()) + '\n';
 
-    auto& incident = info.json["incident"] = nlohmann::ordered_json::array();
-    for (size_t d = 0; d < table.directions(); ++d) {
-        const IncidentDirection& from = table.incident[d];
-        const char* side = from.side == Side::front ? "front" : "back";
-        const std::vector<double> r = table.reflectance(d), t = table.transmittance(d);
-        incident.push_back({{"side", side},
-                            {"theta", degrees(from.theta)},
-                            {"phi", degrees(from.phi)},
-                            {"R", r},
-                            {"T", t},
-                            {"unscattered", row(table.unscattered, d)},
-                            {"absorbed", row(table.absorbed, d)},
-                            {"capped", row(table.capped, d)},
-                            {"lost", row(table.lost, d)},
-                            {"accuracy", table.accuracy[d]},
-                            {"errors", error_json(table.error(d))},
-                            {"paths", table.paths[d]}});
-        fmt::format_to(std::back_inserter(info.text),
-                       "{:5} θ {:4.1f}° φ {:5.1f}°: R {:.4f}, T {:.4f}, unscattered {:.4f}, "
-                       "absorbed {:.4f}, accuracy {:.4f}\n",
-                       side, degrees(from.theta), degrees(from.phi), fmt::join(r, " "),
-                       fmt::join(t, " "), fmt::join(row(table.unscattered, d), " "),
-                       fmt::join(row(table.absorbed, d), " "), table.accuracy[d]);
+    info.json["incident"] = incident_json(table);
+    info.text += incident_text(info.json["incident"]);
+    for (const auto& [name, scattering] : table.colourways) {
+        const BsdfTable dyed = table.in_colourway(name, path.string());
+        const nlohmann::ordered_json incident = incident_json(dyed);
+        info.json["colourways"][name] = {{"accuracy", dyed.largest_accuracy()},
+                                         {"errors", error_json(dyed.largest_error())},
+                                         {"incident", incident}};
+        info.text += fmt::format("colourway {}: accuracy {:.4f}\n", name, dyed.largest_accuracy()) +
+                     incident_text(incident);
     }
     for (const auto& [name, value] : table.metadata)
         if (value.find('\n') == std::string::npos)

@@ -19,7 +19,7 @@ namespace {
 
 struct RenderOptions {
     std::string scene, size;
-    std::vector<std::string> cloths, outputs;
+    std::vector<std::string> cloths, colourways, outputs;
     int samples = 0;  ///< 0 = as the scene says
     double error = 0; ///< 0 = none is asked for
     double accuracy = 0.2;
@@ -36,17 +36,19 @@ glm::ivec2 parse_size(const std::string& text) {
     return {width, height};
 }
 
-/// "CLOTH" or "MATERIAL=CLOTH".
-std::map<std::string, std::filesystem::path> parse_cloths(const std::vector<std::string>& texts) {
-    std::map<std::string, std::filesystem::path> cloths;
+/// "CHOICE" or "MATERIAL=CHOICE", by material.
+template <class Choice>
+std::map<std::string, Choice> parse_choices(const std::vector<std::string>& texts,
+                                            const char* option, const char* expected) {
+    std::map<std::string, Choice> choices;
     for (const std::string& text : texts) {
         const size_t equals = text.find('=');
         const std::string material = equals == std::string::npos ? "" : text.substr(0, equals);
-        const std::string file = equals == std::string::npos ? text : text.substr(equals + 1);
-        if (file.empty() || !cloths.emplace(material, file).second)
-            throw FileError("command line", "--cloth", "one cloth file per material", text);
+        const std::string choice = equals == std::string::npos ? text : text.substr(equals + 1);
+        if (choice.empty() || !choices.emplace(material, choice).second)
+            throw FileError("command line", option, expected, text);
     }
-    return cloths;
+    return choices;
 }
 
 SceneDescription describe(const RenderOptions& options, const CommonOptions& common) {
@@ -95,8 +97,13 @@ Scene load(const RenderOptions& options, const CommonOptions& common,
                            line->update(fraction, fmt::format("accuracy {:.4f}", accuracy));
                        });
     std::vector<std::string> warnings;
-    BuildOptions build{parse_cloths(options.cloths),
-                       [&](const std::filesystem::path& path) { return tables.load(path); }};
+    BuildOptions build{parse_choices<std::filesystem::path>(options.cloths, "--cloth",
+                                                            "one cloth file per material"),
+                       [&](const std::filesystem::path& path, const std::string& colourway) {
+                           return tables.load(path, colourway);
+                       },
+                       parse_choices<std::string>(options.colourways, "--colourway",
+                                                  "one colourway per material")};
     Scene scene = build_scene(description, build, warnings);
     line.reset();
     if (common.quiet)
@@ -105,7 +112,7 @@ Scene load(const RenderOptions& options, const CommonOptions& common,
         fmt::print(stderr, "warning: {}\n", warning);
     for (const auto& [path, table] : tables.measured())
         fmt::print("{}: measured to accuracy {:.4f} on {} bins\n", path.string(),
-                   table->table().largest_accuracy(), 2 * table->table().exits.bins());
+                   table->largest_accuracy(), 2 * table->exits.bins());
     return scene;
 }
 
@@ -143,6 +150,8 @@ void run(const RenderOptions& options, const CommonOptions& common) {
     std::string command = "rapport render " + options.scene;
     for (const std::string& cloth : options.cloths)
         command += " --cloth " + cloth;
+    for (const std::string& colourway : options.colourways)
+        command += " --colourway " + colourway;
     Image image = film.image();
     image.attributes["command"] = command;
     image.attributes["seed"] = std::to_string(common.seed);
@@ -172,6 +181,9 @@ void add_render_command(CLI::App& app, const CommonOptions& common) {
     command->add_option("--cloth", options->cloths,
                         "Cloth (.bsdf, .toml or .wif) for every glTF material, or as "
                         "MATERIAL=CLOTH for one (repeatable)");
+    command->add_option("--colourway", options->colourways,
+                        "Colourway of the cloth given for every glTF material, or as "
+                        "MATERIAL=COLOURWAY for one (repeatable)");
     CLI::Option* const samples = command->add_option("--spp", options->samples, "Samples per pixel")
                                      ->check(CLI::Range(1, 1 << 24));
     command

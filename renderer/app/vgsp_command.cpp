@@ -81,7 +81,7 @@ void scan(const Cloth& cloth, const std::filesystem::path& output, const VgspOpt
     const MicroElement element = build_micro_element(cloth, {.seed = settings.seed});
     const kernel::FibreTracer tracer(element.fibres);
     const std::vector<PlaneScan> scans =
-        scan_planes(tracer, cloth_optics(cloth, tracer, settings), cloth.bands,
+        scan_planes(tracer, cloth_optics(cloth, tracer, settings).fibres, cloth.bands,
                     scan_incidence(options), settings, watch);
     double accuracy = 0;
     for (const PlaneScan& each : scans)

@@ -13,16 +13,20 @@ namespace {
 
 using MaterialPointer = std::shared_ptr<const MaterialDescription>;
 
-MaterialPointer cloth_material(const std::string& name, const std::filesystem::path& file) {
+MaterialPointer cloth_material(const std::string& name, const std::filesystem::path& file,
+                               const std::string& colourway) {
     auto material = std::make_shared<MaterialDescription>();
     material->type = "cloth";
     material->name = name;
     material->params = Params(file.string(), "cloth", 0);
-    Param filename;
-    filename.type = "string";
-    filename.name = "filename";
-    filename.strings = {file.string()};
-    material->params.add(std::move(filename));
+    for (const auto& [parameter, value] :
+         {std::pair("filename", file.string()), {"colourway", colourway}}) {
+        Param param;
+        param.type = "string";
+        param.name = parameter;
+        param.strings = {value};
+        material->params.add(std::move(param));
+    }
     return material;
 }
 
@@ -33,7 +37,12 @@ class Builder {
         : description_(description), options_(options), warnings_(warnings),
           base_dir_(description.path.parent_path()) {
         for (const auto& [name, file] : options.cloths)
-            overrides_[name] = cloth_material(name, file);
+            overrides_[name] = cloth_material(name, file, colourway_of(name));
+        for (const auto& [name, colourway] : options.colourways)
+            if (!options.cloths.contains(name))
+                throw FileError(description_.path.string(), "",
+                                "a cloth for each material that is given a colourway",
+                                fmt::format("\"{}\" for \"{}\"", colourway, name));
         for (const auto& [name, material] : description.named_materials)
             names_met_.insert(name);
     }
@@ -57,6 +66,11 @@ class Builder {
     }
 
   private:
+    std::string colourway_of(const std::string& name) const {
+        const auto found = options_.colourways.find(name);
+        return found == options_.colourways.end() ? "" : found->second;
+    }
+
     void add_shape(const ShapeDescription& shape, std::vector<Surface>& surfaces) {
         const auto needs_uvs = [&](const std::string& name) {
             return material_for(shape, name)->type == "cloth";

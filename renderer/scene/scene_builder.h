@@ -18,7 +18,9 @@ struct BuildOptions {
     /// occurs nowhere is a FileError.
     std::map<std::string, std::filesystem::path> cloths;
     /// How materials get their tables; see TableLoader.
-    std::function<std::shared_ptr<const TableBsdf>(const std::filesystem::path&)> load_table;
+    LoadTable load_table;
+    /// By the same names, the colourways of those cloths; a name without a cloth is a FileError.
+    std::map<std::string, std::string> colourways;
 };
 
 /// Reads everything that a description names and makes the scene. What was ignored or mended on

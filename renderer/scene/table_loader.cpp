@@ -11,17 +11,25 @@ namespace rapport {
 TableLoader::TableLoader(double accuracy, uint64_t seed, Progress progress)
     : accuracy_(accuracy), seed_(seed), progress_(std::move(progress)) {}
 
-std::shared_ptr<const TableBsdf> TableLoader::load(const std::filesystem::path& path) {
-    const std::filesystem::path key = std::filesystem::weakly_canonical(path);
-    if (const auto found = loaded_.find(key); found != loaded_.end())
-        return found->second;
+std::shared_ptr<const TableBsdf> TableLoader::load(const std::filesystem::path& path,
+                                                   const std::string& colourway) {
+    auto& loaded = loaded_[{std::filesystem::weakly_canonical(path), colourway}];
+    if (!loaded)
+        loaded = std::make_shared<const TableBsdf>(
+            all_colourways(path)->in_colourway(colourway, path.string()), path.string());
+    return loaded;
+}
+
+std::shared_ptr<const BsdfTable> TableLoader::all_colourways(const std::filesystem::path& path) {
+    auto& table = tables_[std::filesystem::weakly_canonical(path)];
+    if (table)
+        return table;
     std::string extension = path.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return std::tolower(c); });
     const bool stored = extension == ".bsdf";
-    auto table = std::make_shared<const TableBsdf>(
-        stored ? read_table(path) : measure_file(path, extension), path.string());
-    loaded_[key] = table;
+    table = std::make_shared<const BsdfTable>(stored ? read_table(path)
+                                                     : measure_file(path, extension));
     if (!stored)
         measured_[path] = table;
     return table;

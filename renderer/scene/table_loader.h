@@ -10,9 +10,9 @@
 
 namespace rapport {
 
-/// Gets measured tables by file name: a `.bsdf` is read; a cloth `.toml`, or a `.wif` in the
-/// built-in viscose yarns, is measured by the goniophotometer first. Each file is read or measured
-/// once.
+/// Gets measured tables by file name and colourway: a `.bsdf` is read; a cloth `.toml`, or a `.wif`
+/// in the built-in viscose yarns, is measured by the goniophotometer first, in all its colourways.
+/// Each file is read or measured once.
 class TableLoader {
   public:
     /// Told while `path` is being measured: the accuracy reached and the finished share, [0, 1].
@@ -22,20 +22,25 @@ class TableLoader {
     /// `accuracy` is the ε asked of a measurement.
     explicit TableLoader(double accuracy = 0.2, uint64_t seed = 0, Progress progress = {});
 
-    std::shared_ptr<const TableBsdf> load(const std::filesystem::path& path);
+    /// An empty colourway is the cloth's own dyes; FileError for one that the cloth has not.
+    std::shared_ptr<const TableBsdf> load(const std::filesystem::path& path,
+                                          const std::string& colourway);
 
     /// The tables measured so far, to be kept or reported.
-    const std::map<std::filesystem::path, std::shared_ptr<const TableBsdf>>& measured() const {
+    const std::map<std::filesystem::path, std::shared_ptr<const BsdfTable>>& measured() const {
         return measured_;
     }
 
   private:
+    std::shared_ptr<const BsdfTable> all_colourways(const std::filesystem::path& path);
     BsdfTable measure_file(const std::filesystem::path& path, const std::string& extension) const;
 
     double accuracy_;
     uint64_t seed_;
     Progress progress_;
-    std::map<std::filesystem::path, std::shared_ptr<const TableBsdf>> loaded_, measured_;
+    std::map<std::filesystem::path, std::shared_ptr<const BsdfTable>> tables_, measured_;
+    std::map<std::pair<std::filesystem::path, std::string>, std::shared_ptr<const TableBsdf>>
+        loaded_;
 };
 
 } // namespace rapport

@@ -15,7 +15,7 @@ namespace rapport {
 namespace {
 
 void run(benchmark::State& state, const kernel::FibreAssembly& assembly,
-         const std::vector<FibreOptics>& optics) {
+         const std::vector<FibreOptics>& optics, const Colourways& colourways = {}) {
     constexpr uint64_t kPaths = 200'000;
     const kernel::FibreTracer tracer(assembly);
     set_thread_count(static_cast<int>(state.range(0)));
@@ -24,7 +24,8 @@ void run(benchmark::State& state, const kernel::FibreAssembly& assembly,
     const std::clock_t cpu_start = std::clock();
     for (auto _ : state) {
         const GoniophotometerCounts counts =
-            measure(tracer, optics, {.accuracy = 1e-6, .max_paths = kPaths, .seed = seed++}, table);
+            measure(tracer, optics, {.accuracy = 1e-6, .max_paths = kPaths, .seed = seed++}, table,
+                    {}, {}, colourways);
         paths += counts.paths;
         events += counts.events;
     }
@@ -52,13 +53,17 @@ YarnSpec filament_yarn() {
     return yarn;
 }
 
-void plain_weave(benchmark::State& state) {
+void plain_weave(benchmark::State& state, double roughness, int colourways) {
+    Colourways dyes; // beside the undyed
+    for (int i = 1; i < colourways; ++i)
+        dyes[std::string(1, static_cast<char>('a' + i))] = {{1e-3 * i, 2e-3 * i, 5e-3 * i},
+                                                            {3e-3 * i, 2e-3 * i, 1e-3 * i}};
     Cloth cloth;
     cloth.draft = named_weave("plain");
     cloth.ends_per_cm = cloth.picks_per_cm = 50;
     cloth.warp = cloth.weft = filament_yarn();
     run(state, build_micro_element(cloth).fibres,
-        std::vector<FibreOptics>(2, {1.53, {0, 0, 0}, 0}));
+        std::vector<FibreOptics>(2, {1.53, {0, 0, 0}, 0, roughness}), dyes);
 }
 
 BENCHMARK(reference_stack)
@@ -68,9 +73,21 @@ BENCHMARK(reference_stack)
     ->UseRealTime()
     ->Unit(benchmark::kSecond)
     ->Iterations(3);
-BENCHMARK(plain_weave)
+BENCHMARK_CAPTURE(plain_weave, smooth, 0.0, 1)
     ->Arg(1)
     ->Arg(2)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kSecond)
+    ->Iterations(3);
+BENCHMARK_CAPTURE(plain_weave, rough, 0.1, 1)
+    ->Arg(1)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kSecond)
+    ->Iterations(3);
+BENCHMARK_CAPTURE(plain_weave, eight_colourways, 0.0, 8)
+    ->Arg(1)
     ->MeasureProcessCPUTime()
     ->UseRealTime()
     ->Unit(benchmark::kSecond)

@@ -81,6 +81,22 @@ TEST(RefractiveIndex, FromAirToDiamond) {
     EXPECT_GT(before, 0.5);
 }
 
+/// From less than counts to facets that mostly stand upright, of any index.
+TEST(Roughness, FromNoneToOne) {
+    const Shares smooth = shares({1.53, {0}, 0});
+    EXPECT_EQ(shares({1.53, {0}, 0, 1e-300}).reflected, smooth.reflected);
+    for (const double roughness : {1e-6, 1e-4, 1e-2, 0.1, 0.3, 1.0}) {
+        SCOPED_TRACE(testing::Message() << "roughness " << roughness);
+        const Shares rough = shares({1.53, {0}, 0, roughness});
+        tests::expect_sound(rough);
+        EXPECT_LT(rough.capped, 5e-3);
+        if (roughness <= 1e-4)
+            tests::expect_close(rough, smooth, 1e-4);
+        for (const double index : {1.0, 1 + 1e-12, 1.0001, 4.0})
+            tests::expect_sound(shares({index, {0}, 0, roughness}));
+    }
+}
+
 /// Same seed, same paths: a longer leash takes light out of `capped` and into the rest.
 TEST(DepthCap, OnlyMovesCappedLight) {
     const Shares longest = shares({1.53, {0}, 0}, 1 << 15);

@@ -23,8 +23,10 @@ BsdfTable measured(const FibreTracer& tracer, const FibreOptics& optics,
 }
 
 TEST(Energy, NothingIsLostWithoutAbsorption) {
-    for (const FibreAssembly& assembly : {tests::winding_fibres(), tests::reference_stack()}) {
-        const BsdfTable table = measured(FibreTracer(assembly), {1.53, {0, 0, 0}, 0},
+    for (const auto& [assembly, roughness] : {std::pair(tests::winding_fibres(), 0.0),
+                                              {tests::reference_stack(), 0.0},
+                                              {tests::winding_fibres(), 0.3}}) {
+        const BsdfTable table = measured(FibreTracer(assembly), {1.53, {0, 0, 0}, 0, roughness},
                                          {{Side::front, 0, 0},
                                           {Side::front, radians(45.0), radians(90.0)},
                                           {Side::back, radians(80.0), radians(33.0)},
@@ -46,7 +48,7 @@ TEST(Energy, IndexOneScattersNothing) {
                                                   {Side::back, radians(70.0), radians(45.0)}};
     const FibreTracer tracer(tests::reference_stack());
     const BsdfTable clear = measured(tracer, {1, {0, 0, 0}, 0}, incident);
-    const BsdfTable dyed = measured(tracer, {1, {0, 0.01, 0.02}, 0}, incident);
+    const BsdfTable dyed = measured(tracer, {1, {0, 0.01, 0.02}, 0, 0.3}, incident);
     for (size_t d = 0; d < incident.size(); ++d) {
         EXPECT_FLOAT_EQ(clear.unscattered[3 * d], 1);
         EXPECT_FLOAT_EQ(dyed.unscattered[3 * d], 1);

@@ -34,7 +34,7 @@ std::shared_ptr<const Bsdf> make(const std::string& name) {
         params.add({.type = "string", .name = "filename", .numbers = {}, .strings = {"satin"}});
         params.add({.type = "float", .name = "rotation", .numbers = {25}, .strings = {}});
     }
-    return make_material(name, {params, "", [](const std::filesystem::path&) {
+    return make_material(name, {params, "", [](const auto&, const auto&) {
                                     static const auto table = std::make_shared<const TableBsdf>(
                                         tests::synthetic_table(tests::satin_intensity, 0.05), "");
                                     return table;

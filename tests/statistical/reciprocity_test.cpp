@@ -166,6 +166,7 @@ TEST(Reciprocity, OfAStackOfFibres) {
     EXPECT_GT(clear.degrees, 500);
     EXPECT_GT(clear.p_value, 0.002);
     EXPECT_GT(as_it_is(tracer, {{1.53, {0.02}, 0.01}}).p_value, 0.002) << "dyed";
+    EXPECT_GT(as_it_is(tracer, {{1.53, {0.02}, 0, 0.3}}).p_value, 0.002) << "rough";
     EXPECT_GT(one_way_fibres(tracer, 1.53, 1.53).p_value, 0.002) << "the twin, both ways alike";
     EXPECT_LT(one_way_fibres(tracer, 1.58, 1.53).p_value, 1e-6);
 }

@@ -69,11 +69,11 @@ Scattering traced(double index, double inclination, double absorption, int paths
             CounterRng rng(7, Purpose::test, batch, i);
             light = {.position = {width / 2 + kRadius * (2 * rng.uniform() - 1), 30, 100},
                      .direction = {0, -std::sin(inclination), -std::cos(inclination)},
-                     .optical_depth = {0}};
+                     .length = {0}};
             while (advance(tracer, media, light, rng) == FibreStep::event && light.events < 1000) {
             }
             EXPECT_NEAR(light.direction.y, -std::sin(inclination), 1e-12); // the cone, exactly
-            const double weight = std::exp(-light.optical_depth[0]);
+            const double weight = std::exp(-absorption * light.length[0]);
             Scattering& sums = batches[batch];
             if (light.events <= kLobes) {
                 sums.lobes[light.events - 1] += weight;

@@ -94,7 +94,8 @@ Estimate by_render(std::shared_ptr<const TableBsdf> table, const glm::dvec3& eye
     file.name = "filename";
     file.strings = {"swatch.bsdf"};
     params.add(file);
-    const auto material = make_material("cloth", {params, "", [&](const auto&) { return table; }});
+    const auto material =
+        make_material("cloth", {params, "", [&](const auto&, const auto&) { return table; }});
 
     // The swatch is a millimetre wide, the disc a thousand times farther away.
     constexpr int kEdges = 256;

@@ -38,7 +38,7 @@ inline std::shared_ptr<const Bsdf> cloth(const Intensity& intensity, double unsc
     params.add(file);
     const auto table = std::make_shared<const TableBsdf>(synthetic_table(intensity, unscattered),
                                                          "synthetic.bsdf");
-    return make_material("cloth", {params, "", [&](const auto&) { return table; }});
+    return make_material("cloth", {params, "", [&](const auto&, const auto&) { return table; }});
 }
 /// Half of the light passes, the other half is absorbed.
 inline std::shared_ptr<const Bsdf> half_open_cloth() {

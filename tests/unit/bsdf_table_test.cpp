@@ -151,6 +151,66 @@ TEST_F(BsdfFile, PartialAndOneSidedAndSpectralTablesRoundTrip) {
     expect_equal(front, read_table(path_));
 }
 
+BsdfTable with_colourways() {
+    BsdfTable table = small_synthetic_table(satin_intensity, 0.05);
+    const BsdfTable dark =
+        small_synthetic_table([](const auto& from, const glm::dvec3& out,
+                                 size_t band) { return 0.1 * satin_intensity(from, out, band); },
+                              0.05);
+    table.colourways["a / black"] = dark;
+    table.colourways["b"] = table;
+    table.accuracy.assign(table.directions(), 0.1f);
+    table.colourways["b"].accuracy.assign(table.directions(), 0.3f);
+    return table;
+}
+
+TEST_F(BsdfFile, ColourwaysRoundTrip) {
+    const BsdfTable table = with_colourways();
+    write_table(table, path_);
+    const BsdfTable read = read_table(path_);
+    ASSERT_EQ(read.colourways.size(), 2u);
+    for (const char* name : {"", "a / black", "b"})
+        expect_equal(read.in_colourway(name, ""), table.in_colourway(name, ""));
+    EXPECT_LT(read.in_colourway("a / black", "").reflectance(0)[0], table.reflectance(0)[0]);
+    EXPECT_EQ(read.largest_accuracy(), 0.3f);
+    EXPECT_EQ(read.in_colourway("", "").largest_accuracy(), 0.1f);
+    EXPECT_TRUE(read.in_colourway("b", "").colourways.empty());
+}
+
+TEST_F(BsdfFile, UnknownColourwaysListTheKnown) {
+    try {
+        with_colourways().in_colourway("red", "x.bsdf");
+        FAIL();
+    } catch (const FileError& error) {
+        EXPECT_EQ(error.path, "x.bsdf");
+        EXPECT_NE(error.expected.find("a / black, b"), std::string::npos);
+        EXPECT_NE(error.found.find("red"), std::string::npos);
+    }
+    EXPECT_THROW(small_synthetic_table(satin_intensity).in_colourway("red", ""), FileError);
+}
+
+TEST_F(BsdfFile, DamagedColourwaysAreRefused) {
+    const auto error_of = [&](const std::function<void(TensorFile&)>& change) {
+        return error_after([&](TensorFile& fields) {
+            write_table(with_colourways(), path_);
+            fields = read_tensor_file(path_);
+            change(fields);
+        });
+    };
+    EXPECT_EQ(error_of([](TensorFile& f) { f.erase("colourway_1_lost"); }).place,
+              "colourway_1_lost");
+    EXPECT_EQ(error_of([](TensorFile& f) { f["colourways"] = TensorField::text("{}"); }).place,
+              "colourways");
+    EXPECT_NE(error_of([](TensorFile& f) {
+                  f["colourways"] = TensorField::text("[\"a\", \"a\"]");
+              }).found.find("twice"),
+              std::string::npos);
+    EXPECT_EQ(error_of([](TensorFile& f) {
+                  f["colourway_0_absorbed"] = f["colourway_1_absorbed"];
+              }).place,
+              "colourway_0_intensity[0]");
+}
+
 TEST_F(BsdfFile, HasTheAgreedArrays) {
     const BsdfTable table = small_synthetic_table(satin_intensity);
     write_table(table, path_);

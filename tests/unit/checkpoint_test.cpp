@@ -43,7 +43,7 @@ class Checkpointed : public testing::Test {
                     EXPECT_GE(state.seconds_left, 0);
                     EXPECT_GT(state.paths_per_second, 0);
                 },
-                {folder_ / "table.part", resume});
+                {folder_ / "table.part", resume}, {{"dark", {{0.1, 0.2, 0.3}}}});
         return table;
     }
 
@@ -62,6 +62,13 @@ void expect_same_numbers(const BsdfTable& a, const BsdfTable& b) {
     EXPECT_EQ(a.accuracy, b.accuracy);
     EXPECT_EQ(a.bin_error, b.bin_error);
     EXPECT_EQ(a.realisation_error, b.realisation_error);
+    ASSERT_EQ(a.colourways.size(), b.colourways.size());
+    for (const auto& [name, scattering] : a.colourways) {
+        EXPECT_EQ(scattering.intensity, b.colourways.at(name).intensity);
+        EXPECT_EQ(scattering.absorbed, b.colourways.at(name).absorbed);
+        EXPECT_EQ(scattering.accuracy, b.colourways.at(name).accuracy);
+        EXPECT_EQ(scattering.realisation_error, b.colourways.at(name).realisation_error);
+    }
 }
 
 TEST_F(Checkpointed, RunsThatAreInterruptedEndWithTheSameNumbers) {

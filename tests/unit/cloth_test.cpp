@@ -42,6 +42,7 @@ diameter_um = 12
 refractive_index = 1.55
 color = [0.5, 0.25, 0]
 surface_absorption = 0.01
+roughness = 0.2
 )";
 
 /// kCloth with its only `old_words` replaced.
@@ -108,7 +109,38 @@ TEST(Cloth, EveryKeyIsRead) {
     weft.fibre.refractive_index = 1.55;
     weft.fibre.color = {0.5, 0.25, 0};
     weft.fibre.surface_absorption = 0.01;
+    weft.fibre.roughness = 0.2;
     EXPECT_EQ(cloth.weft, weft);
+}
+
+constexpr std::string_view kColourways = R"(
+[colourway.navy]
+warp.color = [0.05, 0.08, 0.2]
+weft.absorption_per_um = 0.1
+[colourway."as it is"]
+)";
+
+TEST(Cloth, MayHaveARefractiveIndexForEachBand) {
+    const Cloth cloth =
+        read_text(with("refractive_index = 1.526", "refractive_index = [1.51, 1.52, 1.53]"));
+    EXPECT_EQ(cloth.warp.fibre.refractive_index, (PerBand{1.51, 1.52, 1.53}));
+    EXPECT_EQ(read_text(cloth.source).warp, cloth.warp);
+    EXPECT_NE(refusal(with("refractive_index = 1.526", "refractive_index = [1.51, 1.52]"))
+                  .expected.find("3 numbers"),
+              std::string::npos);
+}
+
+TEST(Colourway, DyesTheYarnsThatItNames) {
+    const Cloth cloth = read_text(std::string(kCloth) + std::string(kColourways));
+    const std::vector<double> navy{0.05, 0.08, 0.2}, dark{0.1, 0.1, 0.1};
+    ASSERT_EQ(cloth.colourways.size(), 2u);
+    EXPECT_TRUE(cloth.colourways.at("as it is").empty());
+    EXPECT_EQ(cloth.colourways.at("navy"),
+              (std::map<std::string, Dye>{{"warp", {.absorption_per_um = {}, .color = navy}},
+                                          {"weft", {.absorption_per_um = dark, .color = {}}}}));
+    EXPECT_EQ(read_text(cloth.source).colourways, cloth.colourways);
+    EXPECT_EQ(read_text(cloth.source).source, cloth.source);
+    EXPECT_NE(cloth.source, read_text(kCloth).source);
 }
 
 TEST(Cloth, DefaultsAreThoseOfTheTable) {
@@ -329,6 +361,33 @@ TEST(YarnOrder, FollowsTheColoursOfTheDraft) {
               std::string::npos);
 }
 
+TEST(Colourway, NamesYarnsOfTheCloth) {
+    const std::string text = striped("", "") + "[colourway.a]\nyarn.red.color = [0.1, 0.2, 0.3]\n"
+                                               "yarn.spare.color = [0.1, 0.1, 0.1]\n";
+    const Cloth cloth = read_text(text);
+    EXPECT_TRUE(cloth.colourways.at("a").at("yarn.red").color);
+    EXPECT_EQ(cloth.colourways.at("a").size(), 1u); // the spare is not woven
+    EXPECT_NE(refusal(text + "yarn.blue.color = [0, 0, 0]").expected.find("red, spare, white"),
+              std::string::npos);
+    EXPECT_NE(refusal(text + "warp.color = [0, 0, 0]").expected.find("yarn"), std::string::npos);
+    EXPECT_EQ(read_text(cloth.source).colourways, cloth.colourways);
+    const auto refused = [&](const std::string& colourway) {
+        return refusal(std::string(kCloth) + "[colourway.a]\n" + colourway).expected;
+    };
+    EXPECT_NE(refused("fill.color = [0, 0, 0]").find("warp, weft"), std::string::npos);
+    EXPECT_NE(refused("warp.colour = [0, 0, 0]").find("color, absorption_per_um"),
+              std::string::npos);
+    EXPECT_NE(refused("warp = {}").find("'color' or"), std::string::npos);
+    EXPECT_NE(refused("warp.color = [0, 0]").find("3 numbers"), std::string::npos);
+    EXPECT_NE(refused("warp = 1").find("a table"), std::string::npos);
+    std::string many(kCloth);
+    for (int i = 0; i < 33; ++i)
+        many += "[colourway." + std::to_string(i) + "]\n";
+    EXPECT_NE(refusal(many).expected.find("at most 32"), std::string::npos);
+    EXPECT_NE(refusal(std::string(kCloth) + "[colourway.'']\n").expected.find("a name"),
+              std::string::npos);
+}
+
 TEST(YarnOrder, BadOrdersAreRefused) {
     EXPECT_NE(refusal(striped("\"red\", \"red\"", "\"blue\"")).expected.find("[yarn.blue]"),
               std::string::npos);
@@ -370,6 +429,7 @@ TEST(Cloth, BadValuesAreRefusedAtTheirPlace) {
              {"diameter_um = 11.9", "diameter_um = -11.9", "-11.9", "(0, 1000]"},
              {"refractive_index = 1.526", "refractive_index = 0.99", "0.99", "[1, 4]"},
              {"surface_absorption = 0.01", "surface_absorption = 1.1", "1.1", "[0, 1]"},
+             {"roughness = 0.2", "roughness = 1.1", "1.1", "[0, 1]"},
              {"[0.5, 0.25, 0]", "[0.5, 1, 0]", "1, 0]", "[0, 1)"},
              {"[0.5, 0.25, 0]", "[0.5, 0.25]", "[0.5, 0.25]", "3 numbers"},
              {"[0.5, 0.25, 0]", "[0.5, 0.25, 0, 0]", "[0.5, 0.25, 0, 0]", "3 numbers"},

@@ -145,8 +145,13 @@ TEST(Goniophotometer, RefusesWhatHasNoMeaning) {
     refused({0.9, {0, 0, 0}, 0}, {});
     refused({NAN, {0, 0, 0}, 0}, {});
     refused({1.5, {0, 0}, 0}, {});
+    refused({{1.5, 1.6}, {0, 0, 0}, 0}, {});
+    refused({{1.5, 1.6, 0.9}, {0, 0, 0}, 0}, {});
+    refused({{1.5, 1.6, 1.7}, {0, 0}, 0}, {});
     refused({1.5, {0, 0, -1}, 0}, {});
     refused({1.5, {0, 0, 0}, 1.1}, {});
+    refused({1.5, {0, 0, 0}, 0, -0.1}, {});
+    refused({1.5, {0, 0, 0}, 0, NAN}, {});
     refused({1.5, {0, 0, 0}, 0}, {.accuracy = 0});
     refused({1.5, {0, 0, 0}, 0}, {.max_events = 0});
     EXPECT_THROW(measure(tracer, {}, {}, table), std::invalid_argument);
@@ -213,6 +218,31 @@ TEST(MeasureCloth, WritesWhatDecidesTheResult) {
     for (size_t band = 0; band < 3; ++band)
         EXPECT_NEAR(total(measured.table, 0, band), 1, 1e-5);
     EXPECT_EQ(measure_cloth(cloth, options).table.metadata, metadata);
+}
+
+TEST(MeasureCloth, AColourwaysColoursAreSolvedAsItsOwn) {
+    Cloth cloth = thin_cloth();
+    cloth.warp.fibre.color = {0.8, 0.4, 0.2};
+    cloth.colourways["pale"]["warp"].color = {0.8, 0.8, 0.7};
+    cloth.colourways["pale"]["weft"].absorption_per_um = {0.001, 0, 0};
+    cloth.colourways["same"];
+    const MeasureOptions options{{.accuracy = 1}, {{Side::front, 0.5, 0}}};
+    const BsdfTable table = measure_cloth(cloth, options).table;
+    const auto& metadata = table.metadata;
+    EXPECT_EQ(metadata.at("colourway.same.warp_absorption_per_um"),
+              metadata.at("warp_absorption_per_um"));
+    EXPECT_EQ(metadata.at("colourway.pale.weft_absorption_per_um"), "0.001 0 0");
+    EXPECT_EQ(table.colourways.at("same").intensity, table.intensity);
+    cloth.warp.fibre.color = {0.8, 0.8, 0.7};
+    EXPECT_EQ(measure_cloth(cloth, options).table.metadata.at("warp_absorption_per_um"),
+              metadata.at("colourway.pale.warp_absorption_per_um"));
+    cloth.colourways["pale"]["weft"] = {.absorption_per_um = {}, .color = {{0.5, 0.5, 0.0001}}};
+    try {
+        measure_cloth(cloth, options);
+        FAIL() << "a black that no dye gives was accepted";
+    } catch (const FileError& error) {
+        EXPECT_EQ(error.place, "colourway.pale.weft.color");
+    }
 }
 
 TEST(MeasureCloth, NamesAColourThatCannotBeReached) {

@@ -22,12 +22,19 @@ std::shared_ptr<const TableBsdf> satin() {
     return table;
 }
 
+std::shared_ptr<const TableBsdf> black() {
+    return std::make_shared<const TableBsdf>(
+        tests::small_synthetic_table([](const auto&, const auto&, size_t) { return 0.0; }),
+        "satin.bsdf");
+}
+
 std::shared_ptr<const Bsdf> make(const std::string& name, const std::vector<Param>& list) {
     const Params params = make_params(list);
-    return make_material(name, {params, "cloths", [](const std::filesystem::path& path) {
-                                    EXPECT_EQ(path, std::filesystem::path("cloths") / "satin.bsdf");
-                                    return satin();
-                                }});
+    const auto load = [](const std::filesystem::path& path, const std::string& colourway) {
+        EXPECT_EQ(path, std::filesystem::path("cloths") / "satin.bsdf");
+        return colourway.empty() ? satin() : black();
+    };
+    return make_material(name, {params, "cloths", load});
 }
 
 FileError error_of(const std::string& name, const std::vector<Param>& list) {
@@ -67,7 +74,7 @@ TEST(Materials, UnknownNameListsTheKnown) {
 
 TEST(Materials, UnknownParametersAreErrors) {
     EXPECT_NE(error_of("diffuse", {number("roughness", 0.1)}).found, "none");
-    EXPECT_NE(error_of("cloth", {text("filename", "satin.bsdf"), text("colourway", "red")}).found,
+    EXPECT_NE(error_of("cloth", {text("filename", "satin.bsdf"), text("color", "red")}).found,
               "none");
 }
 
@@ -119,6 +126,13 @@ TEST(Cloth, TurnsCounterClockwiseSeenFromTheFace) {
     EXPECT_NEAR(a->pdf, b->pdf, 1e-4);
     EXPECT_NEAR(std::remainder(azimuth(a->light) - azimuth(b->light) - radians(30.0), 2 * kPi), 0,
                 1e-4);
+}
+
+TEST(Cloth, ComesInColourways) {
+    const auto own = make("cloth", {text("filename", "satin.bsdf")});
+    const auto dyed = make("cloth", {text("filename", "satin.bsdf"), text("colourway", "black")});
+    EXPECT_GT(own->albedo({0, 0, 1}).r, 0);
+    EXPECT_EQ(dyed->albedo({0, 0, 1}), Rgb(0));
 }
 
 TEST(Cloth, NeedsAFileName) {

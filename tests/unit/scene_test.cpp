@@ -223,14 +223,16 @@ TEST_F(SceneBuilder, RefusesWithChoices) {
     contains(refusal("Shape \"plymesh\" \"string filename\" \"absent.ply\""), "absent.ply");
     contains(refusal("Shape \"gltf\" \"string filename\" \"absent.glb\""), "absent.glb");
     contains(refusal("LightSource \"infinite\" \"string filename\" \"absent.exr\""), "absent.exr");
-    contains(refusal(kTriangle, {{{"Body", "satin.bsdf"}}, {}}), "Body");
+    contains(refusal(kTriangle, {{{"Body", "satin.bsdf"}}, {}, {}}), "Body");
+    contains(refusal(kTriangle, {{}, {}, {{"Body", "navy"}}}), "a cloth for each");
 }
 
 TEST_F(SceneBuilder, AClothNeedsUvs) {
     const std::string cloth = "Material \"cloth\" \"string filename\" \"a.bsdf\"\n";
     BuildOptions options;
-    options.load_table = [](const std::filesystem::path& path) {
+    options.load_table = [](const std::filesystem::path& path, const std::string& colourway) {
         EXPECT_EQ(path.filename(), "a.bsdf");
+        EXPECT_EQ(colourway, "");
         return std::make_shared<const TableBsdf>(
             tests::synthetic_table([](const auto&, const auto&, size_t) { return 0.0; }, 0.5),
             "a.bsdf");
