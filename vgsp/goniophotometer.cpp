@@ -48,7 +48,10 @@ class Run {
         return settings_.max_seconds > 0 && seconds() >= settings_.max_seconds;
     }
     std::vector<PathTally> empty_tallies() const {
-        return {table_.directions(), PathTally(table_, tracers_.realisations, tracers_.groups)};
+        std::vector<PathTally> tallies;
+        for (size_t d = 0; d < table_.directions(); ++d)
+            tallies.emplace_back(table_, d, tracers_.realisations, tracers_.groups);
+        return tallies;
     }
     /// How many paths each direction gets.
     std::vector<uint64_t> plan() const;
