@@ -15,7 +15,7 @@ nlohmann::json identity(const BsdfTable& table) {
     auto& incident = run["incident directions"] = nlohmann::json::array();
     for (const IncidentDirection& from : table.incident)
         incident.push_back({from.side == Side::front ? "front" : "back", from.theta, from.phi});
-    run["rings of exit bins"] = table.exits.rings();
+    run["exit bins"] = {table.exits.columns(), table.exits.rows()};
     auto& colourways = run["colourways"] = nlohmann::json::array();
     for (const auto& [name, dyes] : table.colourways)
         colourways.push_back(name);

@@ -51,8 +51,11 @@ class Run {
     }
     /// One for each direction and set of dyes in turn.
     std::vector<PathTally> empty_tallies() const {
-        return {table_.directions() * dyes_,
-                PathTally(table_, tracers_.realisations, tracers_.groups)};
+        std::vector<PathTally> tallies;
+        for (size_t d = 0; d < table_.directions(); ++d)
+            tallies.insert(tallies.end(), dyes_,
+                           PathTally(table_, d, tracers_.realisations, tracers_.groups));
+        return tallies;
     }
     /// Those of one direction, in all dyes.
     std::span<const PathTally> of_direction(const std::vector<PathTally>& tallies,

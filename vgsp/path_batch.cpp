@@ -13,6 +13,7 @@ PathBatch trace_batch(const PathTracers& tracers, const BsdfTable& table, size_t
     batch.capped.assign(channels, 0.0);
     batch.lost.assign(channels, 0.0);
     const IncidentDirection& incident = table.incident[direction];
+    const ExitBins exits = table.exits_of(direction);
     const auto add = [&](const IncidentPath& path, const IncidentPathTracer& paths) {
         const FibreLight& light = path.light;
         const bool capped = path.fate == PathFate::capped;
@@ -24,7 +25,7 @@ PathBatch trace_batch(const PathTracers& tracers, const BsdfTable& table, size_t
             const bool to_front = light.direction.z > 0;
             const bool transmitted = to_front != (incident.side == Side::front);
             batch.quarters.push_back(static_cast<uint32_t>(
-                (transmitted ? 4 * table.exits.bins() : 0) + table.exits.quarter(light.direction)));
+                (transmitted ? 4 * table.exits.bins() : 0) + exits.quarter(light.direction)));
             for (size_t channel = 0; channel < channels; ++channel)
                 batch.weights.push_back(static_cast<float>(path.weight(channel)));
             return;

@@ -17,12 +17,13 @@ GoniophotometerCounts& operator+=(GoniophotometerCounts& a, const Goniophotomete
     return a;
 }
 
-PathTally::PathTally(const BsdfTable& table, size_t realisations, size_t groups)
+PathTally::PathTally(const BsdfTable& table, size_t direction, size_t realisations, size_t groups)
     : bands_(table.bands.count()), groups_(groups), realisation_paths_(realisations) {
     const size_t bins = table.exits.bins();
+    const ExitBins exits = table.exits_of(direction);
     solid_angle_.resize(2 * bins);
     for (size_t bin = 0; bin < 2 * bins; ++bin)
-        solid_angle_[bin] = table.exits.solid_angle(bin % bins);
+        solid_angle_[bin] = exits.solid_angle(bin % bins);
     sum_.assign(2 * bins * bands_, 0.0);
     sum_mean2_.assign(2 * bins, 0.0);
     quarter_.assign(2 * bins * 4, 0.0);

@@ -36,7 +36,7 @@ PathBatch trace_batch(const PathTracers& tracers, const BsdfTable& table, size_t
 /// Sums over the paths of one incident direction in one set of dyes, in double precision.
 class PathTally {
   public:
-    PathTally(const BsdfTable& table, size_t realisations, size_t groups);
+    PathTally(const BsdfTable& table, size_t direction, size_t realisations, size_t groups);
 
     /// To be called in the order of the paths, for equal sums from equal seeds.
     void add(const PathBatch& batch, size_t dyes = 0);

@@ -6,101 +6,45 @@
 namespace rapport {
 namespace {
 
-/// Mean θ over the solid angle of a ring.
-double mean_theta(const DirectionMesh& mesh, int ring) {
-    const auto integral = [](double theta) { return std::sin(theta) - theta * std::cos(theta); };
-    const double low = mesh.theta_low(ring), high = mesh.theta_low(ring + 1);
-    return (integral(high) - integral(low)) / (std::cos(low) - std::cos(high));
-}
-
-/// The means of a ring at azimuth φ (in turns), linear between the centres of its bins.
-Rgb ring_at(const DirectionMesh& mesh, std::span<const Rgb> means, int ring, double turns) {
-    const auto count = static_cast<double>(mesh.ring_bins(ring));
-    const double x = (turns - std::floor(turns)) * count - 0.5;
-    const double below = std::floor(x);
-    const size_t first = mesh.ring_first(ring), bins = mesh.ring_bins(ring);
-    const size_t i = (static_cast<size_t>(below + count)) % bins;
-    return glm::mix(means[first + i], means[first + (i + 1) % bins], static_cast<float>(x - below));
-}
-
-/// A direction across rings: its mean intensity, and its signed angle from the pole.
-struct Neighbour {
-    Rgb mean;
-    double theta;
+/// A bin in a line of bins across a hemisphere; widths in any one unit.
+struct LinePart {
+    double mean, width;
 };
 
-Neighbour inner_neighbour(const DirectionMesh& mesh, std::span<const Rgb> means, int ring,
-                          double turns) {
-    if (ring == 0) // the bin across the pole
-        return {ring_at(mesh, means, 0, turns + 0.5), -mean_theta(mesh, 0)};
-    return {ring_at(mesh, means, ring - 1, turns), mean_theta(mesh, ring - 1)};
-}
-
-Neighbour outer_neighbour(const DirectionMesh& mesh, std::span<const Rgb> means, int ring,
-                          double turns) {
-    const int outer = std::min(ring + 1, mesh.rings() - 1); // the horizon has a one-sided slope
-    return {ring_at(mesh, means, outer, turns), mean_theta(mesh, outer)};
-}
-
-void keep_positive(BinPlane& plane) {
-    constexpr float kSteepest = 0.999f; // at 1 rounding would decide whether a corner scatters
-    for (int channel = 0; channel < 3; ++channel) {
-        const float steepest =
-            std::abs(plane.slope_xi[channel]) + std::abs(plane.slope_eta[channel]);
-        const float allowed = kSteepest * plane.mean[channel];
-        if (steepest > allowed) {
-            plane.slope_xi[channel] *= allowed / steepest;
-            plane.slope_eta[channel] *= allowed / steepest;
-        }
-    }
+/// Change of intensity over half the width of `here`, next to two others or, at an end of the line,
+/// to one of them and to itself.
+double half_change(const LinePart& before, const LinePart& here, const LinePart& after) {
+    const double first = &before == &here ? 0 : 0.5 * (before.width + here.width);
+    const double second = &after == &here ? 0 : 0.5 * (here.width + after.width);
+    return (after.mean - before.mean) * 0.5 * here.width / (first + second);
 }
 
 } // namespace
 
-std::vector<BinPlane> reconstruct(const DirectionMesh& mesh, std::span<const Rgb> means) {
+std::vector<BinPlane> reconstruct(const DirectionMesh& mesh, const ExitBins& exits,
+                                  std::span<const Rgb> means) {
+    constexpr double kSteepest = 0.999; // at 1 rounding would decide whether a corner scatters
+    std::vector<LinePart> parts;        // solid angle is the width in a row, and in a column
+    for (size_t bin = 0; bin < mesh.bins(); ++bin)
+        parts.push_back(
+            {(double(means[bin].r) + means[bin].g + means[bin].b) / 3, exits.solid_angle(bin)});
     std::vector<BinPlane> planes;
-    planes.reserve(means.size());
-    for (int ring = 0; ring < mesh.rings(); ++ring) {
-        const size_t first = mesh.ring_first(ring), bins = mesh.ring_bins(ring);
-        for (size_t i = 0; i < bins; ++i) {
-            const double turns = (static_cast<double>(i) + 0.5) / static_cast<double>(bins);
-            const Neighbour inner = inner_neighbour(mesh, means, ring, turns);
-            const Neighbour outer = outer_neighbour(mesh, means, ring, turns);
-            const double half_width = 0.5 * mesh.ring_width();
-            const auto scale = static_cast<float>(half_width / (outer.theta - inner.theta));
-            const Rgb& left = means[first + (i + bins - 1) % bins];
-            const Rgb& right = means[first + (i + 1) % bins];
-            planes.push_back(
-                {means[first + i], (outer.mean - inner.mean) * scale, (right - left) * 0.25f});
-            keep_positive(planes.back());
+    planes.reserve(mesh.bins());
+    const int columns = mesh.columns(), rows = mesh.rows();
+    for (int column = 0; column < columns; ++column)
+        for (int row = 0; row < rows; ++row) {
+            const auto at = [&](int i, int j) -> const LinePart& {
+                return parts[std::clamp(i, 0, columns - 1) * rows + std::clamp(j, 0, rows - 1)];
+            };
+            const LinePart& here = at(column, row);
+            const double xi = half_change(at(column - 1, row), here, at(column + 1, row));
+            const double eta = half_change(at(column, row - 1), here, at(column, row + 1));
+            const double steepest = std::abs(xi) + std::abs(eta);
+            const double scale = here.mean > 0 ? 1 / std::max(here.mean, steepest / kSteepest) : 0;
+            planes.push_back({means[planes.size()], static_cast<float>(xi * scale),
+                              static_cast<float>(eta * scale)});
         }
-    }
     return planes;
-}
-
-BinLookup::BinLookup(const DirectionMesh& mesh)
-    : rings_per_radian_(static_cast<float>(1 / mesh.ring_width())) {
-    for (int ring = 0; ring < mesh.rings(); ++ring) {
-        const bool last = ring + 1 == mesh.rings();
-        const double cos_low = std::cos(mesh.theta_low(ring));
-        const double cos_high = last ? 0 : std::cos(mesh.theta_low(ring + 1));
-        const size_t bins = mesh.ring_bins(ring);
-        rings_.push_back({static_cast<uint32_t>(mesh.ring_first(ring)), static_cast<uint32_t>(bins),
-                          static_cast<float>(cos_low), static_cast<float>(cos_high),
-                          static_cast<float>(2 / (cos_low - cos_high)),
-                          static_cast<float>(static_cast<double>(bins) / (2 * kPi))});
-        ring_of_.resize(ring_of_.size() + bins, static_cast<uint8_t>(ring));
-    }
-}
-
-glm::vec3 BinLookup::direction(const BinPosition& position) const {
-    const Ring& r = rings_[ring_of_[position.bin]];
-    const float cosine = std::clamp(glm::mix(r.cos_low, r.cos_high, 0.5f * (position.xi + 1)),
-                                    kSmallestCosine, 1.0f);
-    const float step = static_cast<float>(position.bin - r.first) + 0.5f * (position.eta + 1);
-    const float phi = step / r.bins_per_radian;
-    const float sine = std::sqrt((1 - cosine) * (1 + cosine));
-    return {sine * std::cos(phi), sine * std::sin(phi), cosine};
 }
 
 glm::vec2 sample_plane(float a, float b, const glm::vec2& u) {

@@ -18,7 +18,7 @@ using Shape = std::vector<uint64_t>;
 /// Light that is neither in a bin nor in one of the other shares may be this much: rounding of
 /// float sums, not a lost path.
 constexpr double kEnergyTolerance = 1e-3;
-constexpr double kSolidAngleTolerance = 1e-9; // relative; sin() may differ in its last digit
+constexpr double kEdgeTolerance = 1e-12; // rounding, on other machines
 
 template <class T> struct TypeOf;
 template <> struct TypeOf<uint8_t> { static constexpr Type value = Type::u8; };
@@ -134,22 +134,28 @@ class Reader {
         }
     }
 
+    /// The mesh is known by how many columns and rows it has; the edges are there for others.
     void read_exits() {
-        const auto ring_bins = list<uint32_t>("ring_bins");
-        if (ring_bins.size() > DirectionMesh::kMaxRings)
-            fail("ring_bins", fmt::format("at most {} rings", DirectionMesh::kMaxRings),
-                 std::to_string(ring_bins.size()));
-        table_.exits = DirectionMesh(static_cast<int>(ring_bins.size()));
-        const DirectionMesh& mesh = table_.exits;
-        for (int ring = 0; ring < mesh.rings(); ++ring)
-            if (ring_bins[ring] != mesh.ring_bins(ring))
-                fail(fmt::format("ring_bins[{}]", ring), std::to_string(mesh.ring_bins(ring)),
-                     std::to_string(ring_bins[ring]));
-        const auto solid_angle = array<double>("solid_angle", {mesh.bins()});
-        for (size_t bin = 0; bin < mesh.bins(); ++bin)
-            if (!(std::abs(solid_angle[bin] / mesh.solid_angle(bin) - 1) <= kSolidAngleTolerance))
-                fail(fmt::format("solid_angle[{}]", bin), fmt::format("{}", mesh.solid_angle(bin)),
-                     fmt::format("{}", solid_angle[bin]));
+        const auto u = list<double>("exit_u"), v = list<double>("exit_v");
+        for (const auto& [name, edges] : {std::pair("exit_u", &u), {"exit_v", &v}})
+            if (edges->size() % 2 == 0 || edges->size() < 3 ||
+                edges->size() > DirectionMesh::kMost + 1)
+                fail(name,
+                     fmt::format("the edges of an even number of bins up to {}",
+                                 DirectionMesh::kMost),
+                     fmt::format("{} edges", edges->size()));
+        table_.exits =
+            DirectionMesh(static_cast<int>(u.size()) - 1, static_cast<int>(v.size()) - 1);
+        check_edges("exit_u", u, table_.exits.u_edges());
+        check_edges("exit_v", v, table_.exits.v_edges());
+    }
+
+    void check_edges(const std::string& name, const std::vector<double>& found,
+                     const std::vector<double>& expected) const {
+        for (size_t i = 0; i < found.size(); ++i)
+            if (!(std::abs(found[i] - expected[i]) <= kEdgeTolerance))
+                fail(fmt::format("{}[{}]", name, i), fmt::format("{}", expected[i]),
+                     fmt::format("{}", found[i]));
     }
 
     void read_incident() {
@@ -297,17 +303,12 @@ void write_table(const BsdfTable& table, const std::filesystem::path& path) {
     const DirectionMesh& mesh = table.exits;
     const uint64_t directions = table.directions(), bands = table.bands.count();
     std::vector<uint8_t> side;
-    std::vector<double> theta, phi, solid_angle;
-    std::vector<uint32_t> ring_bins;
+    std::vector<double> theta, phi;
     for (const IncidentDirection& incident : table.incident) {
         side.push_back(static_cast<uint8_t>(incident.side));
         theta.push_back(incident.theta);
         phi.push_back(incident.phi);
     }
-    for (int ring = 0; ring < mesh.rings(); ++ring)
-        ring_bins.push_back(static_cast<uint32_t>(mesh.ring_bins(ring)));
-    for (size_t bin = 0; bin < mesh.bins(); ++bin)
-        solid_angle.push_back(mesh.solid_angle(bin));
 
     const auto json_text = [](const nlohmann::json& value) {
         return TensorField::text(
@@ -319,8 +320,8 @@ void write_table(const BsdfTable& table, const std::filesystem::path& path) {
     fields["band_names"] = json_text(table.bands.names);
     if (!table.bands.is_rgb())
         fields["band_edges_nm"] = TensorField::of<double>({bands + 1}, table.bands.edges_nm);
-    fields["ring_bins"] = TensorField::of<uint32_t>({ring_bins.size()}, ring_bins);
-    fields["solid_angle"] = TensorField::of<double>({mesh.bins()}, solid_angle);
+    fields["exit_u"] = TensorField::of<double>({mesh.u_edges().size()}, mesh.u_edges());
+    fields["exit_v"] = TensorField::of<double>({mesh.v_edges().size()}, mesh.v_edges());
     fields["incident_side"] = TensorField::of<uint8_t>({directions}, side);
     fields["incident_theta"] = TensorField::of<double>({directions}, theta);
     fields["incident_phi"] = TensorField::of<double>({directions}, phi);

@@ -29,9 +29,12 @@ void size_arrays(BsdfTable& table) {
 
 std::vector<double> flux(const BsdfTable& table, size_t direction, int block) {
     std::vector<double> sum(table.bands.count());
-    for (size_t bin = 0; bin < table.exits.bins(); ++bin)
+    const ExitBins exits = table.exits_of(direction);
+    for (size_t bin = 0; bin < table.exits.bins(); ++bin) {
+        const double solid_angle = exits.solid_angle(bin);
         for (size_t band = 0; band < sum.size(); ++band)
-            sum[band] += table.at(direction, block, bin, band) * table.exits.solid_angle(bin);
+            sum[band] += table.at(direction, block, bin, band) * solid_angle;
+    }
     return sum;
 }
 
@@ -58,6 +61,11 @@ float& BsdfTable::at(size_t direction, int block, size_t bin, size_t band) {
 
 float BsdfTable::at(size_t direction, int block, size_t bin, size_t band) const {
     return intensity[intensity_index(*this, direction, block, bin, band)];
+}
+
+ExitBins BsdfTable::exits_of(size_t direction) const {
+    const IncidentDirection& from = incident[direction];
+    return {exits, spherical_direction(from.theta, from.phi)};
 }
 
 std::vector<double> BsdfTable::reflectance(size_t direction) const {

@@ -47,12 +47,12 @@ struct Scattering {
 };
 
 /// A cloth's measured BSDF. What is stored is intensity I = f·cosθo [1/sr], per unit of incident
-/// flux: bin means over a fixed mesh of exit directions, for single points of incidence.
-/// Index order: D incident directions × 2 (0 = reflected to the incident side, 1 = transmitted)
-/// × B bins of a hemisphere × bands.
+/// flux: bin means over a mesh of exit directions that moves with the highlights, for single points
+/// of incidence. Index order: D incident directions × 2 (0 = reflected to the incident side, 1 =
+/// transmitted) × B bins of a hemisphere × bands.
 struct BsdfTable : Scattering {
     Bands bands;
-    DirectionMesh exits;
+    DirectionMesh exits; ///< laid out anew for each direction, see `exits_of`
     std::vector<IncidentDirection> incident;
 
     /// The rectangular grid of incidence behind a full table: axes in radians (ascending; φ starts
@@ -71,6 +71,9 @@ struct BsdfTable : Scattering {
     std::map<std::string, std::string> metadata;
 
     size_t directions() const { return incident.size(); }
+    /// The bins of a direction, the same for light that is reflected and transmitted. To be kept no
+    /// longer than the table.
+    ExitBins exits_of(size_t direction) const;
     bool partial() const { return grid_index.empty(); }
     float& at(size_t direction, int block, size_t bin, size_t band);
     float at(size_t direction, int block, size_t bin, size_t band) const;
@@ -89,9 +92,9 @@ struct BsdfTable : Scattering {
 /// Lays out a table's directions and sizes its arrays (zeros).
 ///
 /// The grid of a full table: θ = 0°, 10°, …, 80°, 88° and φ every 15°, 217 directions a side. The
-/// time to measure is proportional to their number: accuracy ε takes about 1.15·B/ε² paths a
-/// direction (B bins on both hemispheres; 1.15 = E[w²]/E[w]² of the path weights of a light cloth),
-/// so both sides at ε = 0.3 take 9 million paths, a minute at 150 000 paths/s.
+/// time to measure is proportional to their number: accuracy ε takes 4π·Σ E[w²]/Ω / E[w]² / ε²
+/// paths a direction (bins of solid angle Ω, path weights w): about 2000/ε² for a plain weave, 3
+/// times that for a satin, whose light falls into the narrow bins about the highlight.
 BsdfTable make_full_table(const Bands& bands, bool front, bool back);
 BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> incident);
 
@@ -101,13 +104,14 @@ BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> 
 /// The arrays bear the names of the members above (`intensity`, `unscattered`, `absorbed`,
 /// `capped`, `lost`, `paths`, `accuracy`, `bin_error`, `realisation_error`, `grid_theta`,
 /// `grid_phi`, `grid_index`), and besides them stand
-/// `incident_side` (0 front, 1 back), `incident_theta`, `incident_phi`, the mesh of exits as
-/// `ring_bins` and `solid_angle` [sr], `band_edges_nm` (absent for RGB), and as texts `band_names`
-/// (a JSON array), `metadata` (a JSON object) and `description`. Angles are in radians, as in the
-/// other tables of this container, so that they survive the round trip bit for bit.
-/// `grid_*` are absent from a partial table, `realisation_error` from one of a single realisation.
-/// Where there are colourways, `colourways` has their names (a JSON array), and the fields of the
-/// first are `colourway_0_intensity` and so on. Fields of other names are ignored.
+/// `incident_side` (0 front, 1 back), `incident_theta`, `incident_phi`, the mesh of exits by
+/// the edges of its bins, `exit_u` and `exit_v` (direction_mesh.h), `band_edges_nm` (absent for
+/// RGB), and as texts `band_names` (a JSON array), `metadata` (a JSON object) and `description`.
+/// Angles are in radians, as in the other tables of this container, so that they survive the round
+/// trip bit for bit. `grid_*` are absent from a partial table, `realisation_error` from one of a
+/// single realisation. Where there are colourways, `colourways` has their names (a JSON array), and
+/// the fields of the first are `colourway_0_intensity` and so on. Fields of other names are
+/// ignored.
 void write_table(const BsdfTable& table, const std::filesystem::path& path);
 BsdfTable read_table(const std::filesystem::path& path);
 

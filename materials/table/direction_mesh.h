@@ -1,58 +1,114 @@
 #pragma once
 
-#include "renderer/core/math.h"
+#include "materials/table/exit_chart.h"
 
 #include <vector>
 
 namespace rapport {
 
-/// A mesh of exit directions on one hemisphere: rings of equal Δθ, each cut into equal Δφ so that
-/// bins are nearly square; ring 0 touches the pole. Bin numbers run along φ within a ring, then
-/// outwards. θ is measured from the pole of the hemisphere the light leaves into, φ from +x
-/// towards +y on both sides, bins of a ring start at φ = 0.
-///
-/// A ring has a multiple of four bins, so that mirroring in a yarn direction or turning by 90° maps
-/// bins onto bins. Ring 0 too has four instead of one: across the pole there is a slope to tell.
+/// A mesh of exits over the chart of a hemisphere (exit_chart.h): columns across u and rows across
+/// v, so that it moves with the highlights. Its bins are rectangles that do not straddle u = 0 or
+/// v = 0, where the highlights are; from there to the edge their widths grow linearly, by
+/// |u| = k·t + (1 − k)·t² over equal steps of t. Bin numbers run along v within a column.
 class DirectionMesh {
   public:
-    static constexpr int kMaxRings = 180;
-    /// `rings` rings of 90°/rings each; std::invalid_argument outside 1 … kMaxRings.
-    explicit DirectionMesh(int rings = 18);
+    static constexpr int kMost = 512; ///< columns, and rows
+    /// Even numbers from 2 to kMost; std::invalid_argument for others. The default is the knee of
+    /// tests/bench/charts/parameterisation.svg.
+    explicit DirectionMesh(int columns = 24, int rows = 16);
 
-    size_t bins() const { return solid_angle_.size(); }
-    int rings() const { return static_cast<int>(first_.size()) - 1; }
-    double solid_angle(size_t bin) const { return solid_angle_[bin]; } ///< [sr]
-    /// The bin of direction `w` of unit length, |w.z| being the cosine to the pole.
-    size_t bin(const glm::dvec3& w) const;
-    /// θ beyond [0, π/2] counts as the nearest end; φ may be any angle.
-    size_t bin(double theta, double phi) const;
-    /// 4·bin + q, q the quarter of the bin that `w` lies in: each bin is cut in two at the middle
-    /// of its cosθ and of its φ, so that its quarters have equal solid angles. It is the mesh twice
-    /// as fine that keeps the edges of this one.
-    size_t quarter(const glm::dvec3& w) const;
+    size_t bins() const { return static_cast<size_t>(columns()) * rows(); }
+    int columns() const { return 2 * u_.middle; }
+    int rows() const { return 2 * v_.middle; }
+    const std::vector<double>& u_edges() const { return u_.edges; }
+    const std::vector<double>& v_edges() const { return v_.edges; }
 
-    size_t ring_first(int ring) const { return first_[ring]; }
-    size_t ring_bins(int ring) const { return first_[ring + 1] - first_[ring]; }
-    int ring_of(size_t bin) const;
-    double theta_low(int ring) const { return ring * ring_width_; }
-    double ring_width() const { return ring_width_; }
     struct Bounds {
-        double theta_low, theta_high, phi_low, phi_high;
+        double u_low, u_high, v_low, v_high;
     };
     Bounds bounds(size_t bin) const;
+    /// A place in a bin: ξ across u and η across v, from −1 to 1.
+    template <class T> struct Place {
+        size_t bin;
+        T xi, eta;
+    };
+    template <class T> Place<T> place(const ChartPoint<T>& point) const;
+    template <class T> ChartPoint<T> point(const Place<T>& place) const;
 
     bool operator==(const DirectionMesh&) const = default;
 
-  private:
-    struct Place {
-        int ring;
-        double step; ///< [0, bins of the ring): the bin and how far along φ in it
-    };
-    Place place(double theta, double phi) const;
+    /// How one coordinate is cut.
+    struct Axis {
+        int middle;                ///< cells to either side of 0
+        float half_finest, growth; ///< k/2, k the finest width over that of equal cells; 1 − k
+        float steps;               ///< middle over 1 − k
+        std::vector<double> edges;
+        struct Cell {
+            float low, half_width, per_half_width;
+            bool operator==(const Cell&) const = default;
+        };
+        std::vector<Cell> cells; ///< the same for looking up
 
-    double ring_width_;
-    std::vector<size_t> first_; ///< rings + 1
-    std::vector<double> solid_angle_;
+        Axis(int count, double finest);
+        bool operator==(const Axis&) const = default;
+        template <class T> size_t cell(T x) const;
+        /// From −1 to 1 across a cell, and back.
+        double across(size_t cell, double x) const {
+            const double low = edges[cell], high = edges[cell + 1];
+            return std::clamp((2 * x - low - high) / (high - low), -1.0, 1.0);
+        }
+        float across(size_t cell, float x) const {
+            return std::clamp((x - cells[cell].low) * cells[cell].per_half_width - 1, -1.0f, 1.0f);
+        }
+        double at(size_t cell, double across) const {
+            return std::lerp(edges[cell], edges[cell + 1], 0.5 * (across + 1));
+        }
+        float at(size_t cell, float across) const {
+            return cells[cell].low + (across + 1) * cells[cell].half_width;
+        }
+    };
+
+  private:
+    Axis u_, v_;
 };
+
+/// The bins of the exits of light from one direction. Refers to the mesh.
+class ExitBins {
+  public:
+    ExitBins(const DirectionMesh& mesh, const glm::dvec3& towards_light)
+        : mesh_(mesh), chart_(towards_light) {}
+
+    /// The bin of the unit vector `w` on its own hemisphere.
+    size_t bin(const glm::dvec3& w) const { return mesh_.place(chart_.point(w)).bin; }
+    /// 4·bin + q, q the quarter of the bin that `w` lies in: each bin is cut in two at the middle
+    /// of its u and of its v, so that its quarters have equal solid angles. It is the mesh twice as
+    /// fine that keeps the edges of this one.
+    size_t quarter(const glm::dvec3& w) const;
+    double solid_angle(size_t bin) const; ///< [sr]
+    /// The unit vector at (ξ, η) of a bin, on the hemisphere of +z.
+    glm::dvec3 direction(size_t bin, double xi = 0, double eta = 0) const;
+
+  private:
+    const DirectionMesh& mesh_;
+    ExitChart<double> chart_;
+};
+
+template <class T> inline size_t DirectionMesh::Axis::cell(T x) const {
+    const T half = half_finest;
+    const T step = (std::sqrt(half * half + growth * std::abs(x)) - half) * steps;
+    const int out = std::min(static_cast<int>(step), middle - 1);
+    const int below = x < 0 ? -1 : 0; // all bits: ~out is −1 − out
+    return static_cast<size_t>(middle + (out ^ below));
+}
+
+template <class T>
+inline DirectionMesh::Place<T> DirectionMesh::place(const ChartPoint<T>& point) const {
+    const size_t column = u_.cell(point.u), row = v_.cell(point.v);
+    return {column * rows() + row, u_.across(column, point.u), v_.across(row, point.v)};
+}
+
+template <class T> inline ChartPoint<T> DirectionMesh::point(const Place<T>& place) const {
+    return {u_.at(place.bin / rows(), place.xi), v_.at(place.bin % rows(), place.eta)};
+}
 
 } // namespace rapport

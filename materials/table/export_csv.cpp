@@ -24,15 +24,15 @@ fmt::memory_buffer csv_lines(const BsdfTable& table, size_t direction,
     const std::string from =
         fmt::format("{},{:.9g},{:.9g}", incident.side == Side::front ? "front" : "back",
                     degrees(incident.theta), degrees(incident.phi));
+    const ExitBins exits = table.exits_of(direction);
     fmt::memory_buffer lines;
     for (int block = 0; block < 2; ++block)
         for (size_t bin = 0; bin < table.exits.bins(); ++bin) {
-            const DirectionMesh::Bounds bounds = table.exits.bounds(bin);
-            const double theta = degrees(0.5 * (bounds.theta_low + bounds.theta_high));
-            const double phi = degrees(0.5 * (bounds.phi_low + bounds.phi_high));
+            const glm::dvec3 centre = exits.direction(bin);
+            const double theta = degrees(std::acos(centre.z)), phi = degrees(azimuth(centre));
             for (size_t band = 0; band < bands.size(); ++band)
                 fmt::format_to(std::back_inserter(lines), "{},{:.9g},{:.9g},{:.9g},{},{}\n", from,
-                               block == 0 ? theta : 180 - theta, phi, table.exits.solid_angle(bin),
+                               block == 0 ? theta : 180 - theta, phi, exits.solid_angle(bin),
                                bands[band], table.at(direction, block, bin, band));
         }
     return lines;

@@ -4,16 +4,17 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 
 namespace rapport {
 
+class PackedTable;
+
 /// Evaluates and samples a full table by one interpolant: `eval`, `pdf` and `sample` agree with
-/// each other by construction. Between directions of incidence, the exits of the nodes around are
-/// moved until their highlights lie where those of the incidence asked for do, and then blended
-/// (see highlight_shift.h). All of it belongs to the *eye* direction, which takes the table's
-/// incidence slot (reciprocity): eval(eye, light) = I(eye → light), so albedo and pdf are those of
-/// the direction the table was measured for. Directions are in the local frame of the cloth.
+/// each other by construction. Between directions of incidence, the nodes around are blended in the
+/// chart in which highlights stand still (exit_chart.h), not in place, which would double them. All
+/// of it belongs to the *eye* direction, which takes the table's incidence slot (reciprocity):
+/// eval(eye, light) = I(eye → light), so albedo and pdf are those of the direction the table was
+/// measured for. Directions are in the local frame of the cloth.
 class TableBsdf {
   public:
     /// FileError(`name` for the message) for a partial table, or one that lacks a side.
@@ -37,11 +38,11 @@ class TableBsdf {
     Rgb unscattered(const glm::vec3& eye) const;
     Rgb albedo(const glm::vec3& eye) const;
 
-    const BsdfTable& table() const;
+    const BsdfTable& table() const { return table_; }
 
   private:
-    struct Implementation;
-    std::unique_ptr<Implementation> implementation_;
+    BsdfTable table_;
+    std::unique_ptr<const PackedTable> packed_;
 };
 
 } // namespace rapport

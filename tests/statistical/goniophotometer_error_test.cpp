@@ -25,9 +25,10 @@ double band_mean(const BsdfTable& table, int block, size_t bin) {
 /// square of the mean intensity.
 double squared_error(const BsdfTable& estimate, const BsdfTable& reference) {
     double difference = 0, mean = 0;
+    const ExitBins exits = estimate.exits_of(0);
     for (int block = 0; block < 2; ++block)
         for (size_t bin = 0; bin < estimate.exits.bins(); ++bin) {
-            const double share = estimate.exits.solid_angle(bin) / (4 * kPi);
+            const double share = exits.solid_angle(bin) / (4 * kPi);
             const double expected = band_mean(reference, block, bin);
             difference += share * square(band_mean(estimate, block, bin) - expected);
             mean += share * expected;

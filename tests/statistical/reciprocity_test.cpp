@@ -17,7 +17,10 @@ namespace {
 
 using kernel::FibreTracer;
 
-const DirectionMesh kMesh(3); ///< of a hemisphere; the cells of the back come after the front's
+/// Cells of a hemisphere, those of the back after the front's: they chart y and the angle ψ round
+/// it from the plane x = 0, dω = dy dψ and cosθ = √(1 − y²)·cosψ.
+const DirectionMesh kMesh(6, 4);
+const ExitBins kCells(kMesh, {0, 0, 1});
 constexpr int kMaxEvents = 4096;
 
 struct Cell {
@@ -25,14 +28,22 @@ struct Cell {
     DirectionMesh::Bounds bounds;
     /// ∫ cosθ dω
     double projected() const {
-        return 0.5 * (bounds.phi_high - bounds.phi_low) *
-               (square(std::sin(bounds.theta_high)) - square(std::sin(bounds.theta_low)));
+        const auto half_disc = [](double y) {
+            return 0.5 * (y * std::sqrt((1 - y) * (1 + y)) + std::asin(y));
+        };
+        return (half_disc(bounds.u_high) - half_disc(bounds.u_low)) *
+               (std::sin(bounds.v_high * kPi / 2) - std::sin(bounds.v_low * kPi / 2));
     }
     IncidentDirection draw(CounterRng& rng) const {
-        const double low = square(std::sin(bounds.theta_low));
-        const double high = square(std::sin(bounds.theta_high));
-        const double theta = std::asin(std::sqrt(low + (high - low) * rng.uniform()));
-        return {side, theta, bounds.phi_low + (bounds.phi_high - bounds.phi_low) * rng.uniform()};
+        double y = 0;
+        do
+            y = std::lerp(bounds.u_low, bounds.u_high, rng.uniform());
+        while (square(rng.uniform()) > (1 - y) * (1 + y));
+        const double sine = std::lerp(std::sin(bounds.v_low * kPi / 2),
+                                      std::sin(bounds.v_high * kPi / 2), rng.uniform());
+        const double across = std::sqrt((1 - y) * (1 + y));
+        const glm::dvec3 w(across * sine, y, across * std::sqrt((1 - sine) * (1 + sine)));
+        return {side, std::acos(std::min(w.z, 1.0)), azimuth(w)};
     }
 };
 
@@ -63,7 +74,7 @@ Exchange exchange(const Trace& trace, int paths_per_cell) {
             CounterRng rng(11, Purpose::test, i, k);
             const IncidentDirection incident = cell(i).draw(rng);
             const Exit exit = trace(incident, rng);
-            const size_t j = (exit.direction.z > 0 ? 0 : kMesh.bins()) + kMesh.bin(exit.direction);
+            const size_t j = (exit.direction.z > 0 ? 0 : kMesh.bins()) + kCells.bin(exit.direction);
             share[j] += exit.weight / n;
             variance[j] += square(exit.weight) / n;
         }
@@ -155,7 +166,7 @@ TEST(Reciprocity, CellsHoldTheHemispheresProjectedArea) {
         sum += cell(i).projected();
         CounterRng rng(1, Purpose::test, 0, i);
         const glm::dvec3 drawn = towards_light(cell(i).draw(rng));
-        EXPECT_EQ((drawn.z > 0 ? 0 : kMesh.bins()) + kMesh.bin(drawn), i);
+        EXPECT_EQ((drawn.z > 0 ? 0 : kMesh.bins()) + kCells.bin(drawn), i);
     }
     EXPECT_NEAR(sum, 2 * kPi, 1e-12);
 }

@@ -150,7 +150,7 @@ TEST(Swatch, RenderedWithItsTableEqualsTheFibresThemselves) {
         const Estimate fibre = by_fibres(fibres, pair.eye, light, paths);
         const Estimate picture = by_render(table, eye, light);
         // The table's own noise in the disc is that of as many paths as the reference has; on top
-        // of the noise, 3 % for what a mesh of 5° bins does to a disc of 10°.
+        // of the noise, 3 % for what the bins of the mesh do to a disc of 10°.
         const double sigma = std::sqrt(2 * fibre.variance + picture.variance);
         const double tolerance = 3.5 * sigma + 0.03 * fibre.mean;
         EXPECT_NEAR(picture.mean, fibre.mean, tolerance)

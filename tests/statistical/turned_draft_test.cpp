@@ -49,15 +49,19 @@ const std::vector<IncidentDirection> kIncident{{Side::front, 0, 0},
                                                {Side::front, radians(70.0), radians(130.0)},
                                                {Side::back, radians(50.0), radians(290.0)}};
 
-BsdfTable measured(const Cloth& cloth, double turn, uint64_t seed) {
+/// All of `kIncident`, or, of a turned cloth, the same turned; counted where they would be
+/// unturned.
+std::vector<tests::ExitCounts> exits(const Cloth& cloth, bool turned, bool turned_back,
+                                     uint64_t seed) {
     std::vector<IncidentDirection> incident = kIncident;
     for (IncidentDirection& direction : incident)
-        direction.phi += turn;
+        direction.phi += turned ? kPi / 2 : 0;
     // Fine segments in the same places: no difference between two realisations of the dither.
     const MicroElement element =
         build_micro_element(cloth, {.max_turn_degrees = 0.5, .dither = false});
-    return tests::measured(kernel::FibreTracer(element.fibres), tests::clear_fibres(), incident,
-                           kPaths, seed);
+    return tests::scattered(kernel::FibreTracer(element.fibres), tests::clear_fibres(1.53, 1),
+                            incident, kPaths, seed,
+                            turned_back ? tests::turned_back : tests::unmoved);
 }
 
 TEST(TurnedDraft, FourTurnsAreNone) {
@@ -67,18 +71,18 @@ TEST(TurnedDraft, FourTurnsAreNone) {
 }
 
 TEST(TurnedDraft, WithItsYarnsExchangedScattersTheSameTurned) {
-    const BsdfTable cloth = measured(denim(), 0, 1);
-    const BsdfTable across = measured(turned(denim()), kPi / 2, 2);
-    // What is near, but wrong, is told apart: a bin map that does not turn, yarns not exchanged.
+    const auto cloth = exits(denim(), false, false, 1);
+    const auto across = exits(turned(denim()), true, true, 2);
+    // What is near, but wrong, is told apart: not turned back, yarns not exchanged.
+    const auto not_back = exits(turned(denim()), true, false, 2);
     Cloth unexchanged = turned(denim());
     std::swap(unexchanged.warp.fibre.diameter_um, unexchanged.weft.fibre.diameter_um);
-    const BsdfTable wrong = measured(unexchanged, kPi / 2, 3);
+    const auto wrong = exits(unexchanged, true, true, 3);
     for (size_t d = 0; d < kIncident.size(); ++d) {
         const double least = tests::sidak(0.01, static_cast<int>(kIncident.size()));
-        EXPECT_GT(tests::same_scattering(cloth, d, across, d, tests::turned_bin).p_value, least)
-            << d;
-        EXPECT_LT(tests::same_scattering(cloth, d, across, d).p_value, 1e-6) << d;
-        EXPECT_LT(tests::same_scattering(cloth, d, wrong, d, tests::turned_bin).p_value, 1e-6) << d;
+        EXPECT_GT(tests::same_scattering(cloth[d], across[d]).p_value, least) << d;
+        EXPECT_LT(tests::same_scattering(cloth[d], not_back[d]).p_value, 1e-6) << d;
+        EXPECT_LT(tests::same_scattering(cloth[d], wrong[d]).p_value, 1e-6) << d;
     }
 }
 

@@ -1,14 +1,14 @@
 #pragma once
 
+#include "renderer/core/parallel.h"
 #include "tests/support/statistics.h"
-#include "vgsp/goniophotometer.h"
+#include "vgsp/incident_path.h"
 #include "vgsp/micro_element.h"
 
 #include <cmath>
-#include <functional>
 
-// What tests of the goniophotometer share: cloths without overlaps, a measurement by a fixed number
-// of paths, and a test for two measurements having the same expectation.
+// What tests of scattering share: cloths without overlaps, counts of where a fixed number of paths
+// leave, and a test for two such counts having the same expectation.
 
 namespace rapport::tests {
 
@@ -51,56 +51,63 @@ inline std::vector<FibreOptics> clear_fibres(double index = 1.53, size_t bands =
     return {clear, clear};
 }
 
-inline BsdfTable measured(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
-                          const std::vector<IncidentDirection>& incident, uint64_t paths,
-                          uint64_t seed = 0, int max_events = 4096) {
-    BsdfTable table = make_partial_table(Bands{}, incident);
-    measure(tracer, optics,
-            {.accuracy = 1e-6, .max_paths = paths, .max_events = max_events, .seed = seed}, table);
-    return table;
+/// Moves a direction, in (out of) the cloth.
+using Motion = glm::dvec3 (*)(const glm::dvec3&);
+inline glm::dvec3 unmoved(const glm::dvec3& w) { return w; }
+inline glm::dvec3 turned_back(const glm::dvec3& w) { return {w.y, -w.x, w.z}; } ///< from y to x
+inline glm::dvec3 half_turned(const glm::dvec3& w) { return {-w.x, -w.y, w.z}; }
+inline glm::dvec3 mirrored(const glm::dvec3& w) { return {-w.x, w.y, w.z}; }
+inline glm::dvec3 turned_over(const glm::dvec3& w) { return {w.x, w.y, -w.z}; }
+
+/// How many paths end where: in the bins of the front, in those of the back, and unscattered.
+using ExitCounts = std::vector<double>;
+
+/// Of equally many paths of each incident direction among clear fibres. Incidence and exits are
+/// moved before they are counted, so that what is the same after the motion has the same counts.
+inline std::vector<ExitCounts> scattered(const kernel::FibreTracer& tracer,
+                                         std::span<const FibreOptics> optics,
+                                         const std::vector<IncidentDirection>& incident,
+                                         uint64_t paths, uint64_t seed, Motion motion = unmoved) {
+    const std::vector<FibreMedium> media = fibre_media(optics, 1, tracer);
+    const IncidentPathTracer path_tracer{tracer, media, 1, 4096, false};
+    const DirectionMesh mesh;
+    std::vector<ExitCounts> counts(incident.size(), ExitCounts(2 * mesh.bins() + 1));
+    parallel_for(incident.size(), [&](size_t d) {
+        // Straight fibres light up exactly on the edge of their own light's bins, where rounding
+        // decides; in the bins of light a little beside, they do not.
+        const glm::dvec3 beside = motion(towards_light(incident[d])) + glm::dvec3(0.03, 0.05, 0);
+        const ExitBins exits(mesh, glm::normalize(beside));
+        IncidentPath path;
+        for (uint64_t k = 0; k < paths; ++k) {
+            CounterRng rng(seed, Purpose::test, d, k);
+            path_tracer.trace(incident[d], rng, path);
+            const glm::dvec3 w = motion(path.light.direction);
+            if (path.fate == PathFate::unscattered)
+                ++counts[d].back();
+            if (path.fate == PathFate::scattered)
+                ++counts[d][(w.z > 0 ? 0 : mesh.bins()) + exits.bin(w)];
+        }
+    });
+    return counts;
 }
 
-/// Where a bin of the first table's exits lies among the second's.
-using BinMap = std::function<size_t(const DirectionMesh& mesh, size_t bin)>;
-inline size_t same_bin(const DirectionMesh&, size_t bin) { return bin; }
-/// The bin after a turn by 90° from x to y.
-inline size_t turned_bin(const DirectionMesh& mesh, size_t bin) {
-    const int ring = mesh.ring_of(bin);
-    const size_t first = mesh.ring_first(ring), count = mesh.ring_bins(ring);
-    return first + (bin - first + count / 4) % count;
-}
-/// The bin after mirroring x.
-inline size_t mirrored_bin(const DirectionMesh& mesh, size_t bin) {
-    const int ring = mesh.ring_of(bin);
-    const size_t first = mesh.ring_first(ring), count = mesh.ring_bins(ring);
-    return first + (count + count / 2 - 1 - (bin - first)) % count;
-}
-
-/// χ² test that two incident directions, measured by equally many paths among clear fibres, scatter
-/// alike: the numbers of paths that end in each bin, and unscattered, have the same expectations.
-inline ChiSquareResult same_scattering(const BsdfTable& a, size_t direction_a, const BsdfTable& b,
-                                       size_t direction_b, const BinMap& map = same_bin) {
-    const double paths = static_cast<double>(a.paths[direction_a]);
+/// χ² test that two incident directions, by equally many paths, scatter alike: that the counts have
+/// the same expectations.
+inline ChiSquareResult same_scattering(const ExitCounts& a, const ExitCounts& b) {
     ChiSquareResult result;
     double rare_a = 0, rare_b = 0;
     const auto add = [&](double count_a, double count_b) {
-        if (count_a + count_b < 20) {
-            rare_a += count_a;
-            rare_b += count_b;
-            return;
-        }
         // Of the paths that end in either, each is as likely from one as from the other.
         result.statistic += square(count_a - count_b) / (count_a + count_b);
         ++result.degrees;
     };
-    for (int block = 0; block < 2; ++block)
-        for (size_t bin = 0; bin < a.exits.bins(); ++bin) {
-            const double scale = a.exits.solid_angle(bin) * paths;
-            add(std::round(a.at(direction_a, block, bin, 0) * scale),
-                std::round(b.at(direction_b, block, map(a.exits, bin), 0) * scale));
+    for (size_t i = 0; i < a.size(); ++i)
+        if (a[i] + b[i] < 20) {
+            rare_a += a[i];
+            rare_b += b[i];
+        } else {
+            add(a[i], b[i]);
         }
-    add(std::round(a.unscattered[direction_a * a.bands.count()] * paths),
-        std::round(b.unscattered[direction_b * b.bands.count()] * paths));
     if (rare_a + rare_b >= 20)
         add(rare_a, rare_b);
     --result.degrees; // both have the same total

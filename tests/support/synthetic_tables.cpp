@@ -5,20 +5,15 @@
 namespace rapport::tests {
 namespace {
 
-/// Midpoints of 3 × 3 equal solid angles of each bin, on the hemisphere of +z.
-constexpr int kSteps = 3;
-std::vector<glm::dvec3> places_in_bins(const DirectionMesh& mesh) {
+/// Midpoints of 4 × 4 equal solid angles of each bin, on the hemisphere of +z.
+constexpr int kSteps = 4;
+std::vector<glm::dvec3> places_in_bins(const ExitBins& exits, size_t bins) {
     std::vector<glm::dvec3> places;
-    for (size_t bin = 0; bin < mesh.bins(); ++bin) {
-        const DirectionMesh::Bounds bounds = mesh.bounds(bin);
+    for (size_t bin = 0; bin < bins; ++bin)
         for (int i = 0; i < kSteps; ++i)
-            for (int j = 0; j < kSteps; ++j) {
-                const double cosine = std::lerp(std::cos(bounds.theta_low),
-                                                std::cos(bounds.theta_high), (i + 0.5) / kSteps);
-                const double phi = std::lerp(bounds.phi_low, bounds.phi_high, (j + 0.5) / kSteps);
-                places.push_back(spherical_direction(std::acos(cosine), phi));
-            }
-    }
+            for (int j = 0; j < kSteps; ++j)
+                places.push_back(
+                    exits.direction(bin, (2 * i + 1.0) / kSteps - 1, (2 * j + 1.0) / kSteps - 1));
     return places;
 }
 
@@ -26,8 +21,9 @@ std::vector<glm::dvec3> places_in_bins(const DirectionMesh& mesh) {
 
 void fill_table(BsdfTable& table, const Intensity& intensity, double unscattered) {
     const size_t bands = table.bands.count();
-    const std::vector<glm::dvec3> places = places_in_bins(table.exits);
     for (size_t d = 0; d < table.directions(); ++d) {
+        const std::vector<glm::dvec3> places =
+            places_in_bins(table.exits_of(d), table.exits.bins());
         const IncidentDirection& from = table.incident[d];
         for (int block = 0; block < 2; ++block)
             for (size_t bin = 0; bin < table.exits.bins(); ++bin)
@@ -74,7 +70,7 @@ BsdfTable small_synthetic_table(const Intensity& intensity, double unscattered) 
     table.grid_theta = thetas;
     table.grid_phi = phis;
     table.grid_index = grid_index;
-    table.exits = DirectionMesh(3);
+    table.exits = DirectionMesh(12, 8);
     table.intensity.resize(table.directions() * 2 * table.exits.bins() * table.bands.count());
     fill_table(table, intensity, unscattered);
     return table;

@@ -1,123 +1,105 @@
 #include "materials/table/direction_mesh.h"
 
+#include "renderer/core/rng.h"
+
 #include <gtest/gtest.h>
-#include <numeric>
 
 namespace rapport {
 namespace {
 
-double total_solid_angle(const DirectionMesh& mesh) {
-    double sum = 0;
-    for (size_t bin = 0; bin < mesh.bins(); ++bin)
-        sum += mesh.solid_angle(bin);
-    return sum;
-}
+const glm::dvec3 kLight = spherical_direction(radians(52.0), radians(205.0));
 
 TEST(DirectionMesh, CoversTheHemisphereExactly) {
-    for (const int rings : {1, 2, 3, 9, 18, 45, 180})
-        EXPECT_NEAR(total_solid_angle(DirectionMesh(rings)), 2 * kPi, 1e-12) << rings;
-}
-
-TEST(DirectionMesh, SolidAnglesAreThoseOfTheBounds) {
-    const DirectionMesh mesh;
-    for (size_t bin = 0; bin < mesh.bins(); ++bin) {
-        const auto b = mesh.bounds(bin);
-        const double area =
-            (std::cos(b.theta_low) - std::cos(b.theta_high)) * (b.phi_high - b.phi_low);
-        EXPECT_NEAR(mesh.solid_angle(bin) / area, 1, 1e-11) << bin;
-    }
-}
-
-TEST(DirectionMesh, EighteenRingsOfNearlySquareBins) {
-    const DirectionMesh mesh(18);
-    EXPECT_EQ(mesh.rings(), 18);
-    EXPECT_EQ(mesh.bins(), 824u);
-    EXPECT_NEAR(mesh.ring_width(), radians(5.0), 1e-15);
-    for (int ring = 0; ring < mesh.rings(); ++ring) {
-        EXPECT_EQ(mesh.ring_bins(ring) % 4, 0u);
-        const double width = std::sin((ring + 0.5) * mesh.ring_width()) * 2 * kPi /
-                             static_cast<double>(mesh.ring_bins(ring));
-        EXPECT_NEAR(width / mesh.ring_width(), 1, 0.25) << ring;
-    }
-}
-
-TEST(DirectionMesh, FindsEachBinFromItsInside) {
-    for (const int rings : {1, 3, 18}) {
-        const DirectionMesh mesh(rings);
-        for (size_t bin = 0; bin < mesh.bins(); ++bin) {
-            const auto b = mesh.bounds(bin);
-            EXPECT_LE(mesh.ring_first(mesh.ring_of(bin)), bin);
-            for (const double s : {1e-9, 0.5, 1 - 1e-9})
-                for (const double t : {1e-9, 0.5, 1 - 1e-9}) {
-                    const double theta = std::lerp(b.theta_low, b.theta_high, s);
-                    const double phi = std::lerp(b.phi_low, b.phi_high, t);
-                    ASSERT_EQ(mesh.bin(theta, phi), bin);
-                    glm::dvec3 w = spherical_direction(theta, phi);
-                    ASSERT_EQ(mesh.bin(w), bin) << theta << " " << phi;
-                    w.z = -w.z; // the other hemisphere has the same azimuths
-                    ASSERT_EQ(mesh.bin(w), bin);
-                }
+    for (const auto& [columns, rows] : {std::pair(2, 2), {6, 4}, {24, 12}, {80, 512}})
+        for (const glm::dvec3& light : {kLight, glm::dvec3(0, 0, 1)}) {
+            const DirectionMesh mesh(columns, rows);
+            const ExitBins exits(mesh, light);
+            double sum = 0;
+            for (size_t bin = 0; bin < mesh.bins(); ++bin)
+                sum += exits.solid_angle(bin);
+            EXPECT_NEAR(sum, 2 * kPi, 1e-10) << columns << " " << rows;
         }
+}
+
+TEST(DirectionMesh, IsFinestAtTheHighlightsAndSymmetric) {
+    const DirectionMesh mesh;
+    ASSERT_EQ(mesh.bins(), static_cast<size_t>(mesh.columns() * mesh.rows()));
+    for (const std::vector<double>* edges : {&mesh.u_edges(), &mesh.v_edges()}) {
+        const size_t n = edges->size() - 1;
+        EXPECT_EQ(edges->front(), -1);
+        EXPECT_EQ(edges->at(n / 2), 0);
+        for (size_t i = 0; i <= n; ++i)
+            EXPECT_EQ(edges->at(i), -edges->at(n - i));
+        for (size_t i = n / 2 + 1; i < n; ++i)
+            EXPECT_GT(edges->at(i + 1) - edges->at(i), edges->at(i) - edges->at(i - 1));
     }
 }
 
-TEST(DirectionMesh, EdgesOfTheDomainHaveABin) {
-    const DirectionMesh mesh;
-    const size_t last_ring = mesh.ring_first(17);
-    EXPECT_EQ(mesh.bin(kPi / 2, 0), last_ring);
-    EXPECT_EQ(mesh.bin(kPi / 2, 2 * kPi), last_ring);
-    EXPECT_EQ(mesh.bin(0, 0), 0u);
-    EXPECT_EQ(mesh.bin(-0.0, -0.0), 0u);
-    EXPECT_EQ(mesh.bin(0.01, -1e-300), 3u); // just below 2π: the last bin of its ring
-    EXPECT_EQ(mesh.bin(0.01, std::nextafter(2 * kPi, 0)), 3u);
-    EXPECT_EQ(mesh.bin(0.01, -kPi / 4), 3u);
-    EXPECT_EQ(mesh.bin(0.01, 9 * kPi / 4), 0u);
-    EXPECT_EQ(mesh.bin(glm::dvec3(0, 0, 1)), 0u);
-    EXPECT_EQ(mesh.bin(glm::dvec3(-0.0, -0.0, -1)), mesh.bin(0, kPi));
-    EXPECT_EQ(mesh.bin(glm::dvec3(1, 0, 0)), last_ring);
-    EXPECT_EQ(mesh.bin(glm::dvec3(1, -0.0, -0.0)), last_ring);
-    EXPECT_EQ(mesh.bin(glm::dvec3(1, -1e-10, 0)), mesh.bins() - 1);
-    EXPECT_EQ(mesh.bin(glm::dvec3(1, -1e-320, 0)), last_ring); // no double lies between it and 2π
-    EXPECT_LT(mesh.bin(4.0, 1e6), mesh.bins());
-}
-
-TEST(DirectionMesh, MirrorsOntoItself) {
-    const DirectionMesh mesh;
-    for (size_t bin = 0; bin < mesh.bins(); ++bin) {
-        const auto b = mesh.bounds(bin);
-        const double theta = 0.5 * (b.theta_low + b.theta_high);
-        const auto mirrored = mesh.bounds(mesh.bin(theta, -0.5 * (b.phi_low + b.phi_high)));
-        EXPECT_NEAR(mirrored.phi_low, 2 * kPi - b.phi_high, 1e-12);
-        const auto turned = mesh.bounds(mesh.bin(theta, 0.5 * (b.phi_low + b.phi_high) + kPi / 2));
-        EXPECT_NEAR(std::remainder(turned.phi_low - b.phi_low - kPi / 2, 2 * kPi), 0, 1e-12);
+TEST(DirectionMesh, FindsEachBinFromItsInsideInBothPrecisions) {
+    for (const int n : {2, 6, 24}) {
+        const DirectionMesh mesh(n, n);
+        const ExitBins exits(mesh, kLight);
+        for (size_t bin = 0; bin < mesh.bins(); ++bin)
+            for (const double xi : {-0.999, 0.0, 0.999})
+                for (const double eta : {-0.999, 0.5, 0.999}) {
+                    const glm::dvec3 w = exits.direction(bin, xi, eta);
+                    ASSERT_EQ(exits.bin(w), bin);
+                    ASSERT_EQ(exits.bin({w.x, w.y, -w.z}), bin);
+                    const ChartPoint<float> p =
+                        mesh.point<float>({bin, static_cast<float>(xi), static_cast<float>(eta)});
+                    const auto place = mesh.place(p);
+                    ASSERT_EQ(place.bin, bin);
+                    ASSERT_NEAR(place.xi, xi, 1e-3);
+                    ASSERT_NEAR(place.eta, eta, 1e-3);
+                }
     }
 }
 
-TEST(DirectionMesh, RefusesNoRings) {
-    EXPECT_THROW(DirectionMesh(0), std::invalid_argument);
-    EXPECT_THROW(DirectionMesh(-3), std::invalid_argument);
-    EXPECT_THROW(DirectionMesh(DirectionMesh::kMaxRings + 1), std::invalid_argument);
+TEST(DirectionMesh, EndsOfTheDomainHaveABin) {
+    const DirectionMesh mesh;
+    const ExitBins exits(mesh, kLight);
+    for (const glm::dvec3& w : {glm::dvec3(0, 0, 1),
+                                {1, 0, 0},
+                                {-1, 0, 0},
+                                {0, 1, 0},
+                                {0, -1, -0.0},
+                                {-0.0, 0.0, -1},
+                                {1, -1e-320, 0}}) {
+        EXPECT_LT(exits.bin(w), mesh.bins());
+        EXPECT_EQ(exits.quarter(w) / 4, exits.bin(w));
+    }
+    for (const float u : {-1.0f, -0.0f, 0.0f, 1.0f})
+        for (const float v : {-1.0f, -1e-30f, 1.0f}) {
+            const auto place = mesh.place(ChartPoint<float>{u, v});
+            EXPECT_LT(place.bin, mesh.bins());
+            EXPECT_LE(std::max(std::abs(place.xi), std::abs(place.eta)), 1);
+        }
+}
+
+TEST(DirectionMesh, RefusesOddOrTooMany) {
+    EXPECT_THROW(DirectionMesh(0, 4), std::invalid_argument);
+    EXPECT_THROW(DirectionMesh(4, 3), std::invalid_argument);
+    EXPECT_THROW(DirectionMesh(-2, 4), std::invalid_argument);
+    EXPECT_THROW(DirectionMesh(4, DirectionMesh::kMost + 2), std::invalid_argument);
 }
 
 TEST(DirectionMesh, QuartersAreOfEqualSolidAngleAndInTheirBin) {
-    const DirectionMesh mesh;
-    for (const size_t bin : {size_t{0}, size_t{3}, size_t{50}, mesh.bins() - 1}) {
-        const auto b = mesh.bounds(bin);
-        std::vector<int> counts(4);
-        constexpr int kSteps = 20; // of cosθ and φ: all cells have one solid angle
-        for (int i = 0; i < kSteps; ++i)
-            for (int j = 0; j < kSteps; ++j) {
-                const double cosine =
-                    std::lerp(std::cos(b.theta_low), std::cos(b.theta_high), (i + 0.5) / kSteps);
-                const double phi = std::lerp(b.phi_low, b.phi_high, (j + 0.5) / kSteps);
-                const size_t quarter = mesh.quarter(spherical_direction(std::acos(cosine), phi));
-                ASSERT_EQ(quarter / 4, bin);
-                ASSERT_EQ(quarter % 4, 2 * (i >= kSteps / 2) + (j >= kSteps / 2));
-                ++counts[quarter % 4];
-            }
-        EXPECT_EQ(counts, std::vector<int>(4, kSteps * kSteps / 4));
+    // Uniform directions: a quarter each of those in a bin, four sigma.
+    const DirectionMesh mesh(6, 4);
+    const ExitBins exits(mesh, kLight);
+    CounterRng rng(1, Purpose::test, 0, 0);
+    std::vector<int> counts(4 * mesh.bins());
+    constexpr int kDirections = 200'000;
+    for (int i = 0; i < kDirections; ++i) {
+        const glm::dvec3 w = spherical_direction(std::acos(rng.uniform()), 2 * kPi * rng.uniform());
+        const size_t quarter = exits.quarter(w);
+        ASSERT_EQ(quarter / 4, exits.bin(w));
+        ++counts[quarter];
     }
-    EXPECT_LT(mesh.quarter({1, -1e-300, 0}), 4 * mesh.bins());
+    for (size_t quarter = 0; quarter < counts.size(); ++quarter) {
+        const double expected = kDirections * exits.solid_angle(quarter / 4) / (4 * 2 * kPi);
+        EXPECT_NEAR(counts[quarter], expected, 4.5 * std::sqrt(expected)) << quarter;
+    }
 }
 
 } // namespace

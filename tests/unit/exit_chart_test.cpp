@@ -1,0 +1,104 @@
+#include "materials/table/exit_chart.h"
+
+#include "renderer/core/rng.h"
+
+#include <gtest/gtest.h>
+
+namespace rapport {
+namespace {
+
+glm::dvec3 random_direction(CounterRng& rng) {
+    return spherical_direction(std::acos(rng.uniform()), 2 * kPi * rng.uniform());
+}
+
+TEST(ExitChart, HasTheMirrorDirectionInItsMiddle) {
+    CounterRng rng(1, Purpose::test, 0, 0);
+    for (int i = 0; i < 1000; ++i) {
+        const glm::dvec3 light = random_direction(rng);
+        const ChartPoint<double> p = ExitChart<double>(light).point({-light.x, -light.y, -light.z});
+        EXPECT_NEAR(p.u, 0, 1e-9);
+        EXPECT_NEAR(p.v, 0, 1e-9);
+    }
+}
+
+TEST(ExitChart, KeepsTheConeOfTheWarpOnALineWhateverTheLight) {
+    CounterRng rng(2, Purpose::test, 0, 0);
+    for (int i = 0; i < 1000; ++i) {
+        const glm::dvec3 light = random_direction(rng);
+        const double round = kPi * (rng.uniform() - 0.5);
+        const double across = std::sqrt(1 - square(light.y));
+        const glm::dvec3 on_cone(across * std::sin(round), -light.y, across * std::cos(round));
+        EXPECT_NEAR(ExitChart<double>(light).point(on_cone).u, 0, 1e-9);
+    }
+}
+
+/// The cone of the weft meets that line in the mirror direction and bends away from it with
+/// distance: how far is stated here.
+TEST(ExitChart, KeepsTheConeOfTheWeftNearALine) {
+    for (const double theta : {20.0, 50.0})
+        for (const double phi : {0.0, 30.0, 60.0}) {
+            const glm::dvec3 light = spherical_direction(radians(theta), radians(phi));
+            for (const double beside : {-0.1, -0.05, 0.05, 0.1}) {
+                glm::dvec3 on_cone(-light.x, -light.y + beside, 0);
+                on_cone.z = safe_sqrt(1 - glm::dot(on_cone, on_cone));
+                EXPECT_LT(std::abs(ExitChart<double>(light).point(on_cone).v),
+                          1.5 * std::abs(beside))
+                    << theta << " " << phi << " " << beside;
+            }
+        }
+}
+
+TEST(ExitChart, IsOneToOneAndItsAreaThatOfSolidAngle) {
+    CounterRng rng(3, Purpose::test, 0, 0);
+    constexpr double kStep = 1e-6;
+    for (int i = 0; i < 1000; ++i) {
+        const ExitChart<double> chart(random_direction(rng));
+        const ChartPoint<double> p{1.9 * rng.uniform() - 0.95, 1.9 * rng.uniform() - 0.95};
+        const glm::dvec3 w = chart.direction(p);
+        EXPECT_NEAR(glm::length(w), 1, 1e-12);
+        EXPECT_GE(w.z, 0);
+        const ChartPoint<double> again = chart.point(w), below = chart.point({w.x, w.y, -w.z});
+        EXPECT_NEAR(again.u, p.u, 1e-9);
+        EXPECT_NEAR(again.v, p.v, 1e-9);
+        EXPECT_EQ(below.u, again.u);
+        if (std::min(std::abs(p.u), std::abs(p.v)) < 2 * kStep)
+            continue; // astride the highlight, where the slope changes
+        const glm::dvec3 along_u = chart.direction({p.u + kStep, p.v}) - w;
+        const glm::dvec3 along_v = chart.direction({p.u, p.v + kStep}) - w;
+        const double area = glm::length(glm::cross(along_u, along_v)) / square(kStep);
+        EXPECT_NEAR(area * chart.density(p), 1, 1e-3);
+    }
+}
+
+TEST(ExitChart, SinglePrecisionAgrees) {
+    CounterRng rng(4, Purpose::test, 0, 0);
+    for (int i = 0; i < 10000; ++i) {
+        const glm::dvec3 light = random_direction(rng), w = random_direction(rng);
+        const ExitChart<double> exact(light);
+        const ExitChart<float> fast{glm::vec3(light)};
+        const ChartPoint<double> p = exact.point(w);
+        const ChartPoint<float> q = fast.point(glm::vec3(w));
+        // At the ends of the axes a hemisphere is thin across the chart.
+        const double thin = 1e-5 / (1 - std::max(std::abs(light.y), std::abs(w.y)));
+        ASSERT_NEAR(q.u, p.u, thin);
+        ASSERT_NEAR(q.v, p.v, thin + 1e-5 / light.z);
+        const glm::dvec3 back(fast.direction(q));
+        ASSERT_NEAR(glm::length(back), 1, 1e-6);
+        ASSERT_NEAR(glm::distance(back, w), 0, 2e-3);
+    }
+}
+
+TEST(ExitChart, EndsOfTheAxesAreSafe) {
+    for (const glm::vec3 light :
+         {glm::vec3(0, 1, 0), {0, -1, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {-1, 0, 1e-30f}})
+        for (const glm::vec3 w : {glm::vec3(0, 1, 0), {0, -1, 0}, {1, 0, 0}, {0, 0, 1}}) {
+            const ExitChart<float> chart(light);
+            const ChartPoint<float> p = chart.point(w);
+            EXPECT_LE(std::max(std::abs(p.u), std::abs(p.v)), 1);
+            EXPECT_GT(chart.density(p), 0);
+            EXPECT_NEAR(glm::length(chart.direction(p)), 1, 1e-6);
+        }
+}
+
+} // namespace
+} // namespace rapport
