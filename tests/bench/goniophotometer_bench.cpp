@@ -66,32 +66,13 @@ void plain_weave(benchmark::State& state, double roughness, int colourways) {
         std::vector<FibreOptics>(2, {1.53, {0, 0, 0}, 0, roughness}), dyes);
 }
 
-BENCHMARK(reference_stack)
-    ->Arg(1)
-    ->Arg(2)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kSecond)
-    ->Iterations(3);
-BENCHMARK_CAPTURE(plain_weave, smooth, 0.0, 1)
-    ->Arg(1)
-    ->Arg(2)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kSecond)
-    ->Iterations(3);
-BENCHMARK_CAPTURE(plain_weave, rough, 0.1, 1)
-    ->Arg(1)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kSecond)
-    ->Iterations(3);
-BENCHMARK_CAPTURE(plain_weave, eight_colourways, 0.0, 8)
-    ->Arg(1)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kSecond)
-    ->Iterations(3);
+void timed(benchmark::internal::Benchmark* each) {
+    each->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kSecond)->Iterations(3);
+}
+BENCHMARK(reference_stack)->Arg(1)->Arg(2)->Apply(timed);
+BENCHMARK_CAPTURE(plain_weave, smooth, 0.0, 1)->Arg(1)->Arg(2)->Apply(timed);
+BENCHMARK_CAPTURE(plain_weave, rough, 0.1, 1)->Arg(1)->Apply(timed);
+BENCHMARK_CAPTURE(plain_weave, eight_colourways, 0.0, 8)->Arg(1)->Apply(timed);
 
 } // namespace
 } // namespace rapport
