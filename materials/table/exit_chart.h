@@ -47,13 +47,15 @@ template <class T> class ExitChart {
     }
 
   private:
+    static constexpr double kFarthest = 0.97;
     /// A coordinate on [−1, 1] that is slid until `origin` is 0.
     struct Slide {
         T origin, length[2], inverse[2]; ///< of the sides below and above
 
-        /// Off ±1, where a side would have no length.
+        /// Off ±1: between a mirror direction near the horizon and the horizon itself, bins would
+        /// be so small that the few paths that end there decided the measured error.
         explicit Slide(T x)
-            : origin(std::clamp(x, T(-0.999999), T(0.999999))), length{1 + origin, 1 - origin},
+            : origin(std::clamp(x, T(-kFarthest), T(kFarthest))), length{1 + origin, 1 - origin},
               inverse{1 / length[0], 1 / length[1]} {}
         T still(T x) const {
             const T offset = x - origin;
