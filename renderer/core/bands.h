@@ -28,6 +28,10 @@ struct Bands {
     bool operator==(const Bands&) const = default;
 };
 
+/// The same for a spectrum that is linear between its values at `wavelengths_nm` (ascending) and
+/// constant beyond them: one weight triple per value, seen from 360 to 830 nm.
+std::vector<Rgb> rgb_of_samples(std::span<const float> wavelengths_nm);
+
 /// Rec. 709 luminance of a linear RGB colour.
 inline float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
 
