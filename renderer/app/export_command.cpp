@@ -1,6 +1,7 @@
 #include "materials/table/bsdf_table.h"
 #include "materials/table/export_csv.h"
 #include "materials/table/export_measured.h"
+#include "materials/table/export_radiance.h"
 #include "renderer/app/commands.h"
 
 #include <fmt/format.h>
@@ -31,6 +32,13 @@ void to_measured(const BsdfTable& table, const ExportOptions& options,
                losses.back_transmitted, losses.resolution, losses.largest_albedo_error);
 }
 
+void to_radiance(const BsdfTable& table, const ExportOptions& options,
+                 const std::filesystem::path& path) {
+    const RadianceLosses losses = export_radiance(table, options.table, path);
+    fmt::print("{} numbers; the share of light that leaves is within {:.4f} of the table's\n",
+               losses.values, losses.largest_flux_error);
+}
+
 struct Format {
     const char* ending; ///< of the file, in place of the table's own
     std::function<void(const BsdfTable&, const ExportOptions&, const std::filesystem::path&)> write;
@@ -40,7 +48,8 @@ const std::map<std::string, Format>& formats() {
     static const std::map<std::string, Format> all{
         {"csv", {".csv", to_csv}},
         {"mitsuba", {".mitsuba.bsdf", to_measured<MeasuredColours::rgb>}},
-        {"pbrt", {".pbrt.bsdf", to_measured<MeasuredColours::spectra>}}};
+        {"pbrt", {".pbrt.bsdf", to_measured<MeasuredColours::spectra>}},
+        {"radiance", {".xml", to_radiance}}};
     return all;
 }
 

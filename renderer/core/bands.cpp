@@ -90,6 +90,13 @@ std::vector<Rgb> Bands::to_rgb() const {
     return weights;
 }
 
+glm::vec3 relative_xyz(const Rgb& colour) {
+    static const glm::dmat3 xyz_from_rgb =
+        glm::inverse(glm::dmat3(rgb_from_relative_xyz({1, 0, 0}), rgb_from_relative_xyz({0, 1, 0}),
+                                rgb_from_relative_xyz({0, 0, 1})));
+    return xyz_from_rgb * glm::dvec3(colour);
+}
+
 std::vector<Rgb> rgb_of_samples(std::span<const float> wavelengths_nm) {
     if (wavelengths_nm.empty())
         throw std::invalid_argument("a spectrum needs at least one wavelength");
