@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the tests and runs them, the fast ones first; ends with ctest's own summary and status.
 #   bash tests/run.sh        the short counts
-#   bash tests/run.sh long   full counts, after the unit tests under the sanitizers
+#   bash tests/run.sh long   full counts, after the unit tests under the sanitizers and a minute of each fuzzer
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -20,9 +20,9 @@ build() {
 }
 
 if [[ ${1:-} == long ]]; then
-  for sanitizer in asan tsan; do
-    build "$sanitizer"
-    ctest --preset "$sanitizer"
+  for preset in asan tsan fuzz; do
+    build "$preset"
+    ctest --preset "$preset"
   done
   export RAPPORT_LONG=1
 fi

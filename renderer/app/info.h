@@ -19,6 +19,7 @@ std::string error_text(const MeasurementError& error);
 
 Info draft_info(const std::filesystem::path& path);
 Info cloth_info(const std::filesystem::path& path);
+/// A table of ours, or a `measured` reflectance.
 Info table_info(const std::filesystem::path& path);
 Info image_info(const std::filesystem::path& path);
 Info model_info(const std::filesystem::path& path);

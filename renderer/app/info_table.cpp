@@ -1,4 +1,5 @@
 #include "materials/table/bsdf_table.h"
+#include "materials/table/measured_fields.h"
 #include "renderer/app/info.h"
 
 #include <algorithm>
@@ -26,6 +27,32 @@ nlohmann::ordered_json error_json(const MeasurementError& error) {
         json["realisation"] = *error.realisation;
     json["discarded"] = error.discarded;
     return json;
+}
+
+Info measured_info(const std::filesystem::path& path) {
+    const MeasuredFields fields = read_measured(path);
+    Info info;
+    info.json = {{"kind", "measured"},
+                 {"description", fields.description},
+                 {"isotropic", fields.isotropic()},
+                 {"phi", fields.phi.size()},
+                 {"theta", fields.theta.size()},
+                 {"side", fields.luminance.rows},
+                 {"rgb", !fields.rgb.empty()},
+                 {"wavelengths", fields.wavelengths}};
+    info.text = fmt::format(
+        "Measured reflectance (Dupuy & Jakob): {}\n"
+        "{}, {} azimuths × {} polar angles of incidence, {} × {} nodes each{}{}\n",
+        fields.description,
+        fields.isotropic() ? "isotropic"
+                           : fmt::format("anisotropic, {}-fold symmetric", fields.symmetry()),
+        fields.phi.size(), fields.theta.size(), fields.luminance.rows, fields.luminance.columns,
+        fields.rgb.empty() ? "" : ", RGB",
+        fields.wavelengths.empty()
+            ? ""
+            : fmt::format(", {} wavelengths from {:g} to {:g} nm", fields.wavelengths.size(),
+                          fields.wavelengths.front(), fields.wavelengths.back()));
+    return info;
 }
 
 /// What a table says in one set of dyes of light from each direction.
@@ -72,6 +99,8 @@ std::string incident_text(const nlohmann::ordered_json& incident) {
 } // namespace
 
 Info table_info(const std::filesystem::path& path) {
+    if (is_measured_file(path))
+        return measured_info(path);
     const BsdfTable table = read_table(path);
     Info info;
     info.json["kind"] = "bsdf";

@@ -2,6 +2,7 @@
 
 #include "renderer/core/math.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <stdexcept>
@@ -85,6 +86,37 @@ std::vector<Rgb> Bands::to_rgb() const {
             if (!(white[axis] > 1e-9 * span_nm)) // bands outside this function's range: by width
                 share[axis] = (edges_nm[b + 1] - edges_nm[b]) / span_nm;
         weights[b] = Rgb(rgb_from_relative_xyz(share));
+    }
+    return weights;
+}
+
+glm::vec3 relative_xyz(const Rgb& colour) {
+    static const glm::dmat3 xyz_from_rgb =
+        glm::inverse(glm::dmat3(rgb_from_relative_xyz({1, 0, 0}), rgb_from_relative_xyz({0, 1, 0}),
+                                rgb_from_relative_xyz({0, 0, 1})));
+    return xyz_from_rgb * glm::dvec3(colour);
+}
+
+std::vector<Rgb> rgb_of_samples(std::span<const float> wavelengths_nm) {
+    if (wavelengths_nm.empty())
+        throw std::invalid_argument("a spectrum needs at least one wavelength");
+    std::vector<double> edges;
+    for (int nm = 360; nm <= 830; ++nm)
+        edges.push_back(nm);
+    const std::vector<Rgb> narrow = Bands::from_edges(edges).to_rgb();
+    std::vector<Rgb> weights(wavelengths_nm.size(), Rgb(0));
+    for (size_t b = 0; b < narrow.size(); ++b) {
+        const auto nm = static_cast<float>(0.5 * (edges[b] + edges[b + 1]));
+        const auto above = std::ranges::upper_bound(wavelengths_nm, nm);
+        const auto high = static_cast<size_t>(above - wavelengths_nm.begin());
+        if (high == 0 || high == weights.size()) {
+            weights[high == 0 ? 0 : high - 1] += narrow[b];
+            continue;
+        }
+        const float low_nm = wavelengths_nm[high - 1];
+        const float t = (nm - low_nm) / (wavelengths_nm[high] - low_nm);
+        weights[high - 1] += (1 - t) * narrow[b];
+        weights[high] += t * narrow[b];
     }
     return weights;
 }

@@ -28,6 +28,14 @@ struct Bands {
     bool operator==(const Bands&) const = default;
 };
 
+/// The same for a spectrum that is linear between its values at `wavelengths_nm` (ascending) and
+/// constant beyond them: one weight triple per value, seen from 360 to 830 nm.
+std::vector<Rgb> rgb_of_samples(std::span<const float> wavelengths_nm);
+
+/// X, Y and Z of a linear RGB colour relative to the white it is seen under: (1, 1, 1) is white, as
+/// under an equal-energy light. The inverse of the way from bands to RGB.
+glm::vec3 relative_xyz(const Rgb& colour);
+
 /// Rec. 709 luminance of a linear RGB colour.
 inline float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
 

@@ -39,7 +39,7 @@ template <> constexpr Type kTypeOf<double> = Type::f64;
 
 uint64_t size_of(Type type) {
     switch (type) {
-        using enum Type;
+        using enum TensorField::Type;
     case u8:
     case i8:
         return 1;

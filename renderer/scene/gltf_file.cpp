@@ -79,6 +79,57 @@ bool ignore_image(tinygltf::Image*, int, std::string*, std::string*, int, int, c
     return true;
 }
 
+void append_word(std::vector<char>& to, size_t value) {
+    for (int shift = 0; shift < 32; shift += 8)
+        to.push_back(static_cast<char>(value >> shift));
+}
+
+/// Accessors may do without a bufferView: their values are 0 where no sparse ones stand. tinygltf
+/// refuses such indices, so that it is shown a view of nothing instead; `release` takes it away.
+class ViewlessAccessors {
+  public:
+    explicit ViewlessAccessors(nlohmann::json& root) {
+        for (size_t i = 0; i < root.value("accessors", nlohmann::json::array()).size(); ++i)
+            if (!root["accessors"][i].contains("bufferView"))
+                accessors_.push_back(i);
+        if (accessors_.empty())
+            return;
+        nlohmann::json& views = root["bufferViews"];
+        for (const size_t i : accessors_)
+            root["accessors"][i]["bufferView"] = views.size();
+        views.push_back({{"buffer", 0}, {"byteLength", 1}});
+    }
+    bool empty() const { return accessors_.empty(); }
+
+    void release(tinygltf::Model& model) const {
+        if (empty())
+            return;
+        for (const size_t i : accessors_)
+            model.accessors.at(i).bufferView = -1;
+        model.bufferViews.pop_back();
+    }
+
+  private:
+    std::vector<size_t> accessors_;
+};
+
+/// The file with other JSON; what follows the JSON chunk of a GLB is kept.
+std::vector<char> with_json(const std::vector<char>& file, bool binary, std::string json) {
+    if (!binary)
+        return {json.begin(), json.end()};
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const size_t rest = kHeaderSize + kChunkHeaderSize + word_at(file, kHeaderSize);
+    const size_t end = word_at(file, 8);
+    std::vector<char> changed(file.begin(), file.begin() + 8);
+    append_word(changed, kHeaderSize + kChunkHeaderSize + json.size() + (end - rest));
+    append_word(changed, json.size());
+    append_word(changed, kJsonChunk);
+    changed.insert(changed.end(), json.begin(), json.end());
+    changed.insert(changed.end(), file.begin() + static_cast<ptrdiff_t>(rest),
+                   file.begin() + static_cast<ptrdiff_t>(end));
+    return changed;
+}
+
 std::string one_line(std::string text) {
     text.erase(text.find_last_not_of(" \n\r") + 1);
     for (char& c : text)
@@ -90,15 +141,18 @@ std::string one_line(std::string text) {
 
 tinygltf::Model load_gltf_file(const std::filesystem::path& path,
                                std::vector<std::string>& warnings) {
-    const std::vector<char> file = read_file(path);
+    std::vector<char> file = read_file(path);
     const std::string name = path.string();
     if (file.size() > std::numeric_limits<uint32_t>::max())
         throw FileError(name, "", "less than 4 GB", fmt::format("{} bytes", file.size()));
     const bool binary = is_glb(file);
     if (!binary && path.extension() == ".glb")
         throw FileError(name, "header", "'glTF'", "another beginning");
-    check_gltf_json(binary ? glb_json(file, name) : std::string_view(file.data(), file.size()),
-                    name, warnings);
+    nlohmann::json root = read_gltf_json(
+        binary ? glb_json(file, name) : std::string_view(file.data(), file.size()), name, warnings);
+    const ViewlessAccessors viewless(root);
+    if (!viewless.empty())
+        file = with_json(file, binary, root.dump());
 
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks(plain_file_access());
@@ -120,6 +174,7 @@ tinygltf::Model load_gltf_file(const std::filesystem::path& path,
     }
     if (!loaded)
         throw FileError(name, "", "a valid glTF 2.0 file", one_line(error));
+    viewless.release(model);
     return model;
 }
 

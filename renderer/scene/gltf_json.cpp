@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace rapport {
 namespace {
@@ -42,8 +41,8 @@ class Checker {
     Checker(const std::string& path, std::vector<std::string>& warnings)
         : path_(path), warnings_(warnings) {}
 
-    void run(std::string_view text) {
-        const Json root = parse(text);
+    Json run(std::string_view text) {
+        Json root = parse(text);
         if (!root.is_object())
             fail("", "a JSON object", root);
         const Json asset = root.value("asset", Json());
@@ -63,6 +62,7 @@ class Checker {
         }
         if (root.contains("scene"))
             check_index(root["scene"], "scene");
+        return root;
     }
 
   private:
@@ -172,9 +172,9 @@ class Checker {
 
 } // namespace
 
-void check_gltf_json(std::string_view text, const std::string& path,
-                     std::vector<std::string>& warnings) {
-    Checker(path, warnings).run(text);
+nlohmann::json read_gltf_json(std::string_view text, const std::string& path,
+                              std::vector<std::string>& warnings) {
+    return Checker(path, warnings).run(text);
 }
 
 } // namespace rapport

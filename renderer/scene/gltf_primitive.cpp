@@ -44,7 +44,7 @@ class PrimitiveReader {
             warn("a primitive without POSITION is ignored");
             return {};
         }
-        refuse_missing_data("POSITION", positions);
+        refuse_draco(positions);
         if (primitive_.material >= 0 &&
             static_cast<size_t>(primitive_.material) >= model_.materials.size())
             fail(place_ + ".material", fmt::format("one of {} materials", model_.materials.size()),
@@ -98,17 +98,14 @@ class PrimitiveReader {
         return found == primitive_.attributes.end() ? -1 : found->second;
     }
 
-    /// Positions without data would all be 0: compressed geometry whose extension is not declared.
-    void refuse_missing_data(const std::string& attribute, int index) const {
-        if (static_cast<size_t>(index) >= model_.accessors.size())
-            return; // the accessor's reader says so
-        const tinygltf::Accessor& accessor = model_.accessors[static_cast<size_t>(index)];
-        if (accessor.bufferView >= 0 || accessor.sparse.isSparse)
-            return;
-        const char* draco = "KHR_draco_mesh_compression";
-        fail(attribute_place(attribute), "a bufferView",
-             primitive_.extensions.contains(draco) ? fmt::format("not supported: {}", draco)
-                                                   : fmt::format("none in accessor {}", index));
+    /// Positions without data are all 0; with this extension, declared or not, they are compressed.
+    void refuse_draco(int positions) const {
+        constexpr const char* kDraco = "KHR_draco_mesh_compression";
+        if (static_cast<size_t>(positions) < model_.accessors.size() &&
+            model_.accessors[static_cast<size_t>(positions)].bufferView < 0 &&
+            primitive_.extensions.contains(kDraco))
+            fail(attribute_place("POSITION"), "a bufferView",
+                 fmt::format("not supported: {}", kDraco));
     }
 
     void check_count(const std::string& attribute, size_t count, size_t expected) const {

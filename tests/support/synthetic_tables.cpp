@@ -55,7 +55,8 @@ BsdfTable synthetic_table(const Intensity& intensity, double unscattered) {
     return table;
 }
 
-BsdfTable small_synthetic_table(const Intensity& intensity, double unscattered) {
+BsdfTable small_synthetic_table(const Intensity& intensity, double unscattered,
+                                const Bands& bands) {
     const std::vector<double> thetas = {0, 0.6, 1.4}, phis = {0, kPi / 2, kPi, 3 * kPi / 2};
     std::vector<IncidentDirection> incident;
     std::vector<uint32_t> grid_index;
@@ -66,7 +67,7 @@ BsdfTable small_synthetic_table(const Intensity& intensity, double unscattered) 
                     incident.push_back({side, theta, phi});
                 grid_index.push_back(static_cast<uint32_t>(incident.size() - 1));
             }
-    BsdfTable table = make_partial_table(Bands{}, incident);
+    BsdfTable table = make_partial_table(bands, incident);
     table.grid_theta = thetas;
     table.grid_phi = phis;
     table.grid_index = grid_index;

@@ -17,7 +17,8 @@ void fill_table(BsdfTable& table, const Intensity& intensity, double unscattered
 /// The grid that cloths are measured on, filled.
 BsdfTable synthetic_table(const Intensity& intensity, double unscattered = 0);
 /// A table of few directions and bins, whose file is a few kilobytes.
-BsdfTable small_synthetic_table(const Intensity& intensity, double unscattered = 0);
+BsdfTable small_synthetic_table(const Intensity& intensity, double unscattered = 0,
+                                const Bands& bands = {});
 
 /// A smooth made-up satin: an anisotropic highlight about the mirror direction (narrow across the
 /// warp, white), a coloured diffuse part, and forward transmission. Back and front differ. Not

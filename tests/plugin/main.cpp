@@ -1,0 +1,3 @@
+#include "renderer/app/program.h"
+
+int main(int argc, char** argv) { return rapport::run_program(argc, argv); }
