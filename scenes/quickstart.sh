@@ -2,7 +2,7 @@
 # From a weave draft to a rendered garment: builds the program, measures a satin, dresses the form in it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-accuracy=0.6
+accuracy=0.8
 out=build/quickstart
 
 bash .ci/setup.sh program

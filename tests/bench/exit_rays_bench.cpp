@@ -52,7 +52,7 @@ void run(const char* cloth_path, const char* out_path, uint64_t paths, uint64_t 
     const Cloth cloth = read_cloth(cloth_path);
     const kernel::FibreTracer tracer(build_micro_element(cloth).fibres);
     const std::vector<FibreMedium> media =
-        fibre_media(cloth_optics(cloth, tracer, {}), cloth.bands.count(), tracer);
+        fibre_media(cloth_optics(cloth, tracer, {}).fibres, cloth.bands.count(), tracer);
     const IncidentPathTracer path_tracer{tracer, media, cloth.bands.count(), 4096, true};
     const BsdfTable grid = make_full_table(cloth.bands, true, false);
     std::vector<IncidentDirection> directions;

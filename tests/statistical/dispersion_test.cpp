@@ -99,9 +99,10 @@ TEST(Dispersion, ErrorsOfBandsTracedApartAddInSquares) {
             flux += (table.reflectance(0)[band] + table.transmittance(0)[band]) / 3 / seeds;
     }
     double variance = 0; // the mean over the sphere
-    const DirectionMesh mesh = make_partial_table(Bands{}, {kIncident}).exits;
+    const BsdfTable layout = make_partial_table(Bands{}, {kIncident});
+    const ExitBins exits = layout.exits_of(0);
     for (size_t bin = 0; bin < sum.size(); ++bin)
-        variance += mesh.solid_angle(bin % mesh.bins()) / (4 * kPi) *
+        variance += exits.solid_angle(bin % layout.exits.bins()) / (4 * kPi) *
                     (sum2[bin] - square(sum[bin]) / seeds) / (seeds - 1);
     const double ratio = std::sqrt(claimed) / (std::sqrt(variance) / (flux / (4 * kPi)));
     EXPECT_NEAR(ratio, 1, 0.05);

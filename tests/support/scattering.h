@@ -2,6 +2,7 @@
 
 #include "renderer/core/parallel.h"
 #include "tests/support/statistics.h"
+#include "vgsp/goniophotometer.h"
 #include "vgsp/incident_path.h"
 #include "vgsp/micro_element.h"
 
@@ -57,6 +58,14 @@ inline glm::dvec3 unmoved(const glm::dvec3& w) { return w; }
 inline glm::dvec3 turned_back(const glm::dvec3& w) { return {w.y, -w.x, w.z}; } ///< from y to x
 inline glm::dvec3 half_turned(const glm::dvec3& w) { return {-w.x, -w.y, w.z}; }
 inline glm::dvec3 mirrored(const glm::dvec3& w) { return {-w.x, w.y, w.z}; }
+inline BsdfTable measured(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
+                          const std::vector<IncidentDirection>& incident, uint64_t paths,
+                          uint64_t seed = 0) {
+    BsdfTable table = make_partial_table(Bands{}, incident);
+    measure(tracer, optics, {.accuracy = 1e-6, .max_paths = paths, .seed = seed}, table);
+    return table;
+}
+
 inline glm::dvec3 turned_over(const glm::dvec3& w) { return {w.x, w.y, -w.z}; }
 
 /// How many paths end where: in the bins of the front, in those of the back, and unscattered.
@@ -115,18 +124,18 @@ inline ChiSquareResult same_scattering(const ExitCounts& a, const ExitCounts& b)
     return result;
 }
 
-/// How far apart two incident directions scatter among clear fibres: the RMS difference of their
+/// How far apart two measurements of one incident direction are: the RMS difference of their
 /// intensity over its mean, with what noise adds to it taken off; 0 where that is more.
-inline double departure(const BsdfTable& a, size_t direction_a, const BsdfTable& b,
-                        size_t direction_b) {
+inline double departure(const BsdfTable& a, const BsdfTable& b, size_t direction) {
+    const ExitBins exits = a.exits_of(direction);
     double squares = 0, flux = 0;
     for (int block = 0; block < 2; ++block)
         for (size_t bin = 0; bin < a.exits.bins(); ++bin) {
-            const double x = a.at(direction_a, block, bin, 0), y = b.at(direction_b, block, bin, 0);
-            const double omega = a.exits.solid_angle(bin);
+            const double x = a.at(direction, block, bin, 0), y = b.at(direction, block, bin, 0);
+            const double omega = exits.solid_angle(bin);
             // A path more or less in a bin is 1/(N·Ω) of intensity.
-            const double noise = x / static_cast<double>(a.paths[direction_a]) +
-                                 y / static_cast<double>(b.paths[direction_b]);
+            const double noise = x / static_cast<double>(a.paths[direction]) +
+                                 y / static_cast<double>(b.paths[direction]);
             squares += omega * square(x - y) - noise;
             flux += 0.5 * omega * (x + y);
         }
