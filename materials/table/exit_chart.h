@@ -25,6 +25,10 @@ template <class T> struct ChartPoint { T u, v; };
 /// T = double (the goniophotometer), or float (looking up; angles by polynomials within 2e-6).
 template <class T> class ExitChart {
   public:
+    /// How far from the middle a mirror direction may lie, in y and in quarter turns of ψ, to become
+    /// the origin; nearer to the horizon the origin stays here.
+    static constexpr double kFarthest = 0.97;
+
     /// For light from (or an eye at) the unit vector `towards`; the sign of z does not matter.
     explicit ExitChart(const Vector3<T>& towards)
         : u_(-towards.y), v_(-quarter_turns(towards.x, std::abs(towards.z))) {}
@@ -47,7 +51,6 @@ template <class T> class ExitChart {
     }
 
   private:
-    static constexpr double kFarthest = 0.97;
     /// A coordinate on [−1, 1] that is slid until `origin` is 0.
     struct Slide {
         T origin, length[2], inverse[2]; ///< of the sides below and above

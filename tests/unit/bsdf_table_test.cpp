@@ -152,11 +152,15 @@ TEST_F(BsdfFile, PartialAndOneSidedAndSpectralTablesRoundTrip) {
 }
 
 BsdfTable with_colourways() {
-    BsdfTable table = small_synthetic_table(satin_intensity, 0.05);
-    const BsdfTable dark =
-        small_synthetic_table([](const auto& from, const glm::dvec3& out,
-                                 size_t band) { return 0.1 * satin_intensity(from, out, band); },
-                              0.05);
+    const auto dyed = [](double share) {
+        return small_synthetic_table(
+            [share](const auto& from, const glm::dvec3& out, size_t band) {
+                return share * satin_intensity(from, out, band);
+            },
+            0.05);
+    };
+    BsdfTable table = dyed(0.8);
+    const BsdfTable dark = dyed(0.1);
     table.colourways["a / black"] = dark;
     table.colourways["b"] = table;
     table.accuracy.assign(table.directions(), 0.1f);
