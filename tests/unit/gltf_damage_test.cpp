@@ -111,6 +111,11 @@ TEST(Gltf, EveryDamageIsNamed) {
     }
 }
 
+TEST(Gltf, NumbersBeyondDoubleAreRefused) {
+    const std::string text = R"({"asset":{"version":"2.0"},"extras":1e999})";
+    EXPECT_TRUE(mentions(refusal([&] { read(text, "huge.gltf"); }), "1e999"));
+}
+
 TEST(Gltf, DeepNestingIsRefused) {
     const int depth = 200000;
     const std::string text = R"({"asset":{"version":"2.0"},"extras":)" + std::string(depth, '[') +
