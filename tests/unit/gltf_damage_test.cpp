@@ -147,6 +147,15 @@ TEST(Gltf, OneByteCannotReadPastTheBinaryChunk) {
     EXPECT_FALSE(mentions(refusal([&] { read(file); }), "accepted"));
 }
 
+TEST(Gltf, AHeaderThatLeavesNoRoomForAChunkIsRefused) {
+    std::string file = quad().glb();
+    file[13] = static_cast<char>(file[13] + 0x40); // a JSON chunk beyond the end of the file
+    for (const char length : {0, 12, 19}) {
+        file.replace(8, 4, {length, 0, 0, 0});
+        EXPECT_EQ(refusal([&] { read(file); }).place, "header");
+    }
+}
+
 TEST(Gltf, SharedBrokenFilesAreRefused) {
     RAPPORT_SHARED_DATA_OR_SKIP(data);
     int count = 0;
