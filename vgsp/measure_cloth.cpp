@@ -2,6 +2,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/rng.h"
+#include "renderer/core/text_hash.h"
 #include "vgsp/colour_solver.h"
 
 #include <fmt/format.h>
@@ -19,15 +20,6 @@ uint64_t realisation_seed(uint64_t seed, int realisation) {
     CounterRng random(seed, Purpose::realisation, 0, static_cast<uint64_t>(realisation));
     const uint64_t high = random.bits();
     return high << 32 | random.bits();
-}
-
-/// FNV-1a, 64 bits: tells one cloth's text from another's, the same on every machine. No defence
-/// against forgery.
-uint64_t text_hash(const std::string& text) {
-    uint64_t hash = 0xcbf29ce484222325;
-    for (const char character : text)
-        hash = (hash ^ static_cast<unsigned char>(character)) * 0x100000001b3;
-    return hash;
 }
 
 /// Turns dyes into absorption.
@@ -80,7 +72,7 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
         {"program", fmt::format("rapport {}", RAPPORT_VERSION)},
         {"cloth_name", cloth.name},
         {"cloth", cloth.source},
-        {"cloth_hash", fmt::format("fnv1a64:{:016x}", text_hash(cloth.source))},
+        {"cloth_hash", text_hash(cloth.source)},
         {"bands", fmt::format("{}", fmt::join(cloth.bands.names, " "))},
         {"dispersion", disperses(optics.fibres) ? "yes" : "no"},
         {"seed", fmt::format("{}", settings.seed)},

@@ -1,6 +1,7 @@
 #include "materials/table/bsdf_table.h"
 #include "renderer/core/error.h"
 #include "renderer/core/tensor_file.h"
+#include "renderer/core/text_hash.h"
 
 #include <algorithm>
 #include <cmath>
@@ -132,6 +133,17 @@ class Reader {
                 fail("metadata." + key, "text", value.type_name());
             table_.metadata[key] = value.get<std::string>();
         }
+        check_cloth_hash();
+    }
+
+    /// A text that JSON could not hold has a U+FFFD in it, and cannot be checked.
+    void check_cloth_hash() const {
+        const auto cloth = table_.metadata.find("cloth"), hash = table_.metadata.find("cloth_hash");
+        if (cloth == table_.metadata.end() || hash == table_.metadata.end() ||
+            cloth->second.find("\uFFFD") != std::string::npos)
+            return;
+        if (const std::string expected = text_hash(cloth->second); hash->second != expected)
+            fail("metadata.cloth_hash", expected + " of its cloth", hash->second);
     }
 
     /// The mesh is known by how many columns and rows it has; the edges are there for others.

@@ -38,6 +38,7 @@ using Intensity = std::function<glm::vec3(const glm::vec3& eye, const glm::vec3&
 BsdfTable three_bands(const BsdfTable& table, size_t first) {
     BsdfTable three = table;
     three.bands = Bands{};
+    three.colourways.clear();
     const size_t bands = table.bands.count();
     const auto pick = [&](const std::vector<float>& of) {
         std::vector<float> picked;

@@ -34,9 +34,9 @@ std::string_view glb_json(const std::vector<char>& file, const std::string& path
     if (word_at(file, 4) != 2)
         throw FileError(path, "header", "GLB version 2", fmt::format("{}", word_at(file, 4)));
     const size_t length = word_at(file, 8);
-    if (length > file.size())
-        throw FileError(path, "header", fmt::format("{} bytes", length),
-                        fmt::format("{}", file.size()));
+    if (length > file.size() || length < kHeaderSize + kChunkHeaderSize)
+        throw FileError(path, "header", fmt::format("a length from 20 to {} bytes", file.size()),
+                        fmt::format("{}", length));
     if (word_at(file, 16) != kJsonChunk)
         throw FileError(path, "chunk 0", "the JSON chunk", "another");
     size_t offset = kHeaderSize;

@@ -87,6 +87,9 @@ class Checker {
             const std::string what = error.what();
             throw FileError(path_, fmt::format("byte {}", error.byte), "JSON",
                             what.substr(what.find("] ") + 2));
+        } catch (const Json::out_of_range& error) { // a number that no double can hold
+            const std::string what = error.what();
+            throw FileError(path_, "", "JSON", what.substr(what.find("] ") + 2));
         }
     }
 

@@ -4,6 +4,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/rng.h"
 #include "renderer/core/tensor_file.h"
+#include "renderer/core/text_hash.h"
 #include "tests/support/synthetic_tables.h"
 
 #include <cmath>
@@ -288,6 +289,22 @@ TEST_F(BsdfFile, NamesTheBadValue) {
                       fields["band_names"] = TensorField::text(bad);
                   }).place,
                   "band_names");
+    for (const char* name : {"unscattered", "absorbed", "capped", "lost", "accuracy", "bin_error"})
+        for (const float bad : {nan, -1e-6f, HUGE_VALF})
+            EXPECT_EQ(error_after_setting<float>(name, 2, bad).place, std::string(name) + "[2]");
+    EXPECT_EQ(error_after([&](TensorFile& fields) {
+                  fields["realisation_error"] = fields.at("accuracy");
+                  fields["realisation_error"].shape = {1, fields.at("accuracy").count()};
+              }).place,
+              "realisation_error");
+    const auto with_hash = [](const std::string& hash) {
+        return [hash](TensorFile& fields) {
+            fields["metadata"] =
+                TensorField::text(R"({"cloth": "satin", "cloth_hash": ")" + hash + "\"}");
+        };
+    };
+    EXPECT_EQ(error_after(with_hash("fnv1a64:0123456789abcdef")).place, "metadata.cloth_hash");
+    EXPECT_EQ(error_after(with_hash(text_hash("satin"))).found, "none");
     EXPECT_EQ(error_after([](TensorFile& fields) {
                   fields["band_edges_nm"] = TensorField::of<double>({4}, {400, 500, 450, 700});
               }).place,

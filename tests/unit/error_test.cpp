@@ -12,6 +12,8 @@ TEST(FileError, IsOneLineThatNamesFilePlaceExpectedAndFound) {
     EXPECT_STREQ(FileError("a.exr", "", "an OpenEXR file", "text").what(),
                  "a.exr: expected an OpenEXR file, found text");
     EXPECT_STREQ(FileError("a.exr", 0, "b", "c").what(), "a.exr: expected b, found c");
+    EXPECT_STREQ(FileError("a.wif", 1, "b", "x\ny\x1b[2J").what(),
+                 "a.wif:1: expected b, found x y [2J");
     const FileError error("a.wif", 12, "b", "c");
     EXPECT_EQ(error.place, "12");
     EXPECT_EQ(error.expected, "b");

@@ -111,6 +111,11 @@ TEST(Gltf, EveryDamageIsNamed) {
     }
 }
 
+TEST(Gltf, NumbersBeyondDoubleAreRefused) {
+    const std::string text = R"({"asset":{"version":"2.0"},"extras":1e999})";
+    EXPECT_TRUE(mentions(refusal([&] { read(text, "huge.gltf"); }), "1e999"));
+}
+
 TEST(Gltf, DeepNestingIsRefused) {
     const int depth = 200000;
     const std::string text = R"({"asset":{"version":"2.0"},"extras":)" + std::string(depth, '[') +
@@ -140,6 +145,15 @@ TEST(Gltf, OneByteCannotReadPastTheBinaryChunk) {
                                                                       << 8;
     file[20 + json_length] = static_cast<char>(file[20 + json_length] + 8);
     EXPECT_FALSE(mentions(refusal([&] { read(file); }), "accepted"));
+}
+
+TEST(Gltf, AHeaderThatLeavesNoRoomForAChunkIsRefused) {
+    std::string file = quad().glb();
+    file[13] = static_cast<char>(file[13] + 0x40); // a JSON chunk beyond the end of the file
+    for (const char length : {0, 12, 19}) {
+        file.replace(8, 4, {length, 0, 0, 0});
+        EXPECT_EQ(refusal([&] { read(file); }).place, "header");
+    }
 }
 
 TEST(Gltf, SharedBrokenFilesAreRefused) {
