@@ -16,8 +16,8 @@ namespace {
 // difference at most incidences is then 0.03 to 0.04 of the mean, most of it the table's own steps
 // from bin to bin; a side of 32 gives 0.05 to 0.07, one of 96 0.02 to 0.04 in 110 MB; 24 φ 0.03 to
 // 0.06, a step of θ 0.03 to 0.07; a finer warp changes nothing.
-constexpr size_t kPhiSteps = 72;            ///< of incidence, round the circle
-constexpr size_t kThetaSteps = 4;           ///< between the table's directions of incidence
+constexpr size_t kPhiSteps = 36;            ///< of incidence, round the circle
+constexpr size_t kThetaSteps = 2;           ///< between the table's directions of incidence
 constexpr size_t kRows = 49, kColumns = 33; ///< of the warp: φ and √θ of the half vector
 constexpr size_t kSide = 64;                ///< nodes a side of the warped square
 
