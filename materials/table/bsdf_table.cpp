@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <ranges>
 #include <stdexcept>
 
 namespace rapport {
@@ -105,13 +104,15 @@ BsdfTable BsdfTable::in_colourway(const std::string& name, const std::string& fi
     if (name.empty())
         return table;
     const auto found = colourways.find(name);
-    if (found == colourways.end())
-        throw FileError(
-            file, "",
-            colourways.empty()
-                ? "no colourway's name, the cloth having none"
-                : fmt::format("a colourway: {}", fmt::join(std::views::keys(colourways), ", ")),
-            fmt::format("\"{}\"", name));
+    if (found == colourways.end()) {
+        std::vector<std::string> names;
+        for (const auto& [known, scattering] : colourways)
+            names.push_back(known);
+        throw FileError(file, "",
+                        names.empty() ? "no colourway's name, the cloth having none"
+                                      : fmt::format("a colourway: {}", fmt::join(names, ", ")),
+                        fmt::format("\"{}\"", name));
+    }
     static_cast<Scattering&>(table) = found->second;
     return table;
 }

@@ -8,10 +8,11 @@ using namespace rapport;
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     return tests::fuzz_file("input.pbrt", data, size, [](const std::filesystem::path& path) {
         std::vector<std::string> warnings;
-        const BuildOptions options{
-            {}, [](const std::filesystem::path& table) -> std::shared_ptr<const TableBsdf> {
-                throw FileError(table.string(), "", "a table", "none");
-            }};
+        const BuildOptions options{{},
+                                   [](const std::filesystem::path& table,
+                                      const std::string&) -> std::shared_ptr<const TableBsdf> {
+                                       throw FileError(table.string(), "", "a table", "none");
+                                   }};
         build_scene(parse_pbrt(path), options, warnings);
     });
 }
