@@ -14,9 +14,13 @@ rapport=build/release/rapport
 "$rapport" vgsp scenes/cloths/quickstart.toml -o "$out/satin.bsdf" --accuracy "$accuracy"
 "$rapport" render scenes/quickstart.pbrt -o "$out/garment.exr" -o "$out/garment.png"
 
+reached=$("$rapport" info --json "$out/satin.bsdf" | grep -om1 '"accuracy":[^,]*' | cut -d: -f2)
+reached=$(printf '%.2f' $reached)
 cat <<TEXT
 
-The cloth, measured to the accuracy $accuracy:  $out/satin.bsdf
-The garment:                              $out/garment.exr
-                                          $out/garment.png
+The cloth, of accuracy $reached where $accuracy was asked:
+  $out/satin.bsdf
+The garment:
+  $out/garment.exr
+  $out/garment.png
 TEXT

@@ -53,6 +53,7 @@ std::vector<std::vector<FibreMedium>> media_of_groups(std::span<const FibreOptic
 /// Light on its way through the fibres.
 struct FibreLight {
     glm::dvec3 position{}, direction{};            ///< unit direction of travel
+    glm::dvec3 travelled{};                        ///< from its start: periods do not cut it short
     uint32_t segment = kernel::FibreTracer::kNone; ///< on whose surface it is, if any
     bool inside = false;                           ///< that segment's fibre
     bool scattered = false;                        ///< an event changed its direction
@@ -99,6 +100,7 @@ inline FibreStep advance(const kernel::FibreTracer& tracer, std::span<const Fibr
     const FibreMedium& medium = media[kind];
     if (light.inside)
         light.length[kind] += point.distance;
+    light.travelled += light.direction * point.distance;
     light.surface_depth += medium.surface_depth;
     const BoundaryEvent event =
         medium.roughness < kLeastRoughness

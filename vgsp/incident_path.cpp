@@ -34,37 +34,55 @@ glm::dvec3 towards_light(const IncidentDirection& incident) {
     return w;
 }
 
-void IncidentPathTracer::trace(const IncidentDirection& incident, CounterRng& rng,
-                               IncidentPath& path) const {
-    FibreLight& light = path.light;
-    const double x = rng.uniform(), y = rng.uniform();
-    light.position = {x * tracer.cell().x, y * tracer.cell().y,
-                      incident.side == Side::front ? tracer.z_max() : tracer.z_min()};
-    light.direction = -towards_light(incident);
+void IncidentPath::start(const glm::dvec3& position, const glm::dvec3& direction, size_t kinds,
+                         size_t channels) {
+    light.position = position;
+    light.direction = direction;
+    light.travelled = glm::dvec3(0);
     light.segment = kernel::FibreTracer::kNone;
     light.inside = light.scattered = false;
     light.events = light.overlaps = 0;
     light.surface_depth = 0;
-    light.length.assign(media.size(), 0.0);
-    path.optical_depth.assign(channels, 0.0);
-    path.boost = 1;
-    path.fate = follow(path, rng);
-    optical_depths(light, media, path.optical_depth);
+    light.length.assign(kinds, 0.0);
+    optical_depth.assign(channels, 0.0);
+    boost = 1;
 }
 
-PathFate IncidentPathTracer::follow(IncidentPath& path, CounterRng& rng) const {
+void IncidentPathTracer::trace(const IncidentDirection& incident, CounterRng& rng,
+                               IncidentPath& path) const {
+    const double x = rng.uniform(), y = rng.uniform();
+    path.start({x * tracer.cell().x, y * tracer.cell().y,
+                incident.side == Side::front ? tracer.z_max() : tracer.z_min()},
+               -towards_light(incident), media.size(), channels);
+    std::optional<PathFate> fate;
+    while (!(fate = step(path, rng))) {
+    }
+    path.fate = *fate;
+}
+
+std::optional<PathFate> IncidentPathTracer::step(IncidentPath& path, CounterRng& rng) const {
+    const std::optional<PathFate> fate = advance_path(path, rng);
+    if (fate)
+        optical_depths(path.light, media, path.optical_depth);
+    return fate;
+}
+
+std::optional<PathFate> IncidentPathTracer::advance_path(IncidentPath& path,
+                                                         CounterRng& rng) const {
     FibreLight& light = path.light;
-    while (light.events < static_cast<uint32_t>(max_events))
-        switch (advance(tracer, media, light, rng)) {
-        case FibreStep::leaves:
-            return light.scattered ? PathFate::scattered : PathFate::unscattered;
-        case FibreStep::lost:
-            return PathFate::capped;
-        case FibreStep::event:
-            if (roulette && !survives(path, media, rng))
-                return PathFate::absorbed;
-        }
-    return PathFate::capped;
+    if (light.events >= static_cast<uint32_t>(max_events))
+        return PathFate::capped;
+    switch (advance(tracer, media, light, rng)) {
+    case FibreStep::leaves:
+        return light.scattered ? PathFate::scattered : PathFate::unscattered;
+    case FibreStep::lost:
+        return PathFate::capped;
+    case FibreStep::event:
+        break;
+    }
+    if (roulette && !survives(path, media, rng))
+        return PathFate::absorbed;
+    return std::nullopt;
 }
 
 } // namespace rapport

@@ -3,6 +3,8 @@
 #include "materials/table/bsdf_table.h"
 #include "vgsp/fibre_step.h"
 
+#include <optional>
+
 namespace rapport {
 
 enum class PathFate : uint8_t {
@@ -19,6 +21,9 @@ struct IncidentPath {
     double boost = 1;                  ///< by surviving the roulette
     std::vector<double> optical_depth; ///< per channel (FibreMedium)
 
+    /// Puts light of full weight at `position`, outside all fibres.
+    void start(const glm::dvec3& position, const glm::dvec3& direction, size_t kinds,
+               size_t channels);
     /// Share of the path's light in that channel that is left.
     double weight(size_t channel) const { return boost * std::exp(-optical_depth[channel]); }
 };
@@ -34,10 +39,12 @@ struct IncidentPathTracer {
     /// Follows one path from a point uniform over the cell's area, on the bounding plane of the
     /// side it arrives on. `path` is overwritten.
     void trace(const IncidentDirection& incident, CounterRng& rng, IncidentPath& path) const;
+    /// Takes a path that has started through one more event; nothing while it goes on, else its
+    /// fate, with its optical depths brought up to date.
+    std::optional<PathFate> step(IncidentPath& path, CounterRng& rng) const;
 
   private:
-    /// To its end.
-    PathFate follow(IncidentPath& path, CounterRng& rng) const;
+    std::optional<PathFate> advance_path(IncidentPath& path, CounterRng& rng) const;
 };
 
 /// Unit vector towards where the light comes from.

@@ -11,8 +11,6 @@
 namespace rapport {
 namespace {
 
-constexpr size_t kMostSegments = 10'000'000; ///< of all realisations, about 2 GB ready to trace
-
 /// The first has the run's own seed, so that it is the cloth that a single one would be.
 uint64_t realisation_seed(uint64_t seed, int realisation) {
     if (realisation == 0)
@@ -65,9 +63,8 @@ class Dyer {
 /// Numbers in the shortest form that reads back the same.
 std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroElement& element,
                                             const MicroElementOptions& geometry,
-                                            const ClothOptics& optics,
-                                            const MeasureOptions& options) {
-    const GoniophotometerSettings& settings = options.goniophotometer;
+                                            const ClothOptics& optics, int realisations,
+                                            const GoniophotometerSettings& settings) {
     std::map<std::string, std::string> metadata{
         {"program", fmt::format("rapport {}", RAPPORT_VERSION)},
         {"cloth_name", cloth.name},
@@ -79,7 +76,7 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
         {"accuracy_asked", fmt::format("{}", settings.accuracy)},
         {"max_paths", fmt::format("{}", settings.max_paths)},
         {"max_events", fmt::format("{}", settings.max_events)},
-        {"realisations", fmt::format("{}", options.realisations)},
+        {"realisations", fmt::format("{}", realisations)},
         {"max_turn_degrees", fmt::format("{}", geometry.max_turn_degrees)},
         {"dither", geometry.dither ? "yes" : "no"},
         {"draft_repeats", fmt::format("{} x {}", element.repeats_x, element.repeats_y)},
@@ -145,22 +142,20 @@ measure_cloth(const Cloth& cloth, const MeasureOptions& options,
                                 ? make_full_table(cloth.bands, options.front, options.back)
                                 : make_partial_table(cloth.bands, options.incidence),
                             build_micro_element(cloth, geometry),
+                            options.realisations,
                             {}};
-    const size_t segments = result.element.segments;
-    if (options.realisations > 1 && segments * options.realisations > kMostSegments)
-        throw FileError(cloth.path.string(), "realisations",
-                        fmt::format("at most {} of {} cylinders each",
-                                    std::max<size_t>(1, kMostSegments / segments), segments),
-                        fmt::format("{}", options.realisations));
+    while (result.realisations > 1 && result.realisations * result.element.memory > kMostMemory)
+        --result.realisations;
     std::vector<kernel::FibreTracer> realisations;
     realisations.emplace_back(result.element.fibres);
-    for (int i = 1; i < options.realisations; ++i) {
+    for (int i = 1; i < result.realisations; ++i) {
         MicroElementOptions other = geometry;
         other.seed = realisation_seed(settings.seed, i);
         realisations.emplace_back(build_micro_element(cloth, other).fibres);
     }
     const ClothOptics optics = cloth_optics(cloth, realisations[0], settings);
-    result.table.metadata = metadata(cloth, result.element, geometry, optics, options);
+    result.table.metadata =
+        metadata(cloth, result.element, geometry, optics, result.realisations, settings);
     result.counts = measure(realisations, optics.fibres, settings, result.table, progress,
                             options.checkpoint, optics.colourways);
     return result;

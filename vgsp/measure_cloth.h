@@ -14,7 +14,8 @@ struct MeasureOptions {
     /// (side, θ, φ) in radians; empty = the whole grid of the sides asked for.
     std::vector<IncidentDirection> incidence;
     bool front = true, back = true;
-    /// Micro-elements with random numbers of their own that are averaged; at least 1. How many of
+    /// Micro-elements with random numbers of their own that are averaged, at least 1; fewer where
+    /// kMostMemory does not hold as many. How many of
     /// them stand for a cloth is a matter of the measurement, like its accuracy, and none of the
     /// cloth, whose file tells what they have in common.
     int realisations = 1;
@@ -24,6 +25,7 @@ struct MeasureOptions {
 struct ClothMeasurement {
     BsdfTable table;
     MicroElement element; ///< the first realisation
+    int realisations;     ///< that there were
     GoniophotometerCounts counts;
 };
 
@@ -41,7 +43,7 @@ ClothOptics cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
 /// cloth → micro-element → (colours solved for absorption) → table, with everything that decides
 /// the result in its metadata. One seed serves the fibres, the colours and the paths; the colours
 /// are solved for in the first realisation. FileError (at the cloth's path) for a cloth that cannot
-/// exist, a colour out of reach, or more realisations than fit into memory.
+/// exist or a colour out of reach.
 ClothMeasurement
 measure_cloth(const Cloth& cloth, const MeasureOptions& options,
               const std::function<void(const GoniophotometerProgress&)>& progress = {});

@@ -18,8 +18,6 @@
 namespace rapport {
 namespace {
 
-constexpr double kMostMemory = 4e9; ///< of the cell, once it is ready to trace [bytes]
-
 /// The fibres of a yarn, one for each chain. After one cell a fibre goes on as the one
 /// `packing_steps` places further round its single and `ply_steps` singles further round the yarn;
 /// it closes when it comes back to its place, and is then all the fibres that it has met.
@@ -135,9 +133,10 @@ double fewest_segments(const YarnSystem& system, const YarnSystem& crossed,
     return turn * system.repeats * crossed.repeats / radians(options.max_turn_degrees);
 }
 
-/// Refuses a cell that would take too much memory; `bound` says of which kind the number is.
-void check_memory(double segments, const char* bound, const MicroElement& element,
-                  const Cloth& cloth, size_t ends, size_t picks) {
+/// What the cell takes [bytes]; refused where that is too much. `bound` says of which kind the
+/// number of segments is.
+double checked_memory(double segments, const char* bound, const MicroElement& element,
+                      const Cloth& cloth, size_t ends, size_t picks) {
     const double memory =
         kernel::FibreTracer::memory(segments, element.fibres.cell, element.thickness_um) +
         segments * sizeof(glm::dvec3);
@@ -148,6 +147,7 @@ void check_memory(double segments, const char* bound, const MicroElement& elemen
                                     kMostMemory * 1e-9),
                         fmt::format("{} ends × {} picks of {}{:.2g} cylinders, {:.2g} GB", ends,
                                     picks, bound, segments, memory * 1e-9));
+    return memory;
 }
 
 std::optional<double> mass_of(const kernel::FibreAssembly& assembly,
@@ -187,8 +187,8 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
     const size_t picks = size_t(draft.picks) * warp.repeats;
     element.fibres.cell = {double(ends) * warp.spacing, double(picks) * weft.spacing};
     element.thickness_um = 2 * std::max(warp.greatest_height(), weft.greatest_height());
-    check_memory(fewest_segments(warp, weft, options) + fewest_segments(weft, warp, options),
-                 "at least ", element, cloth, ends, picks);
+    checked_memory(fewest_segments(warp, weft, options) + fewest_segments(weft, warp, options),
+                   "at least ", element, cloth, ends, picks);
     std::vector<WoundYarn> yarns(ends + picks);
     parallel_for(yarns.size(), [&](size_t k) {
         yarns[k] = k < ends ? wind_yarn(warp, {0, 1, 0}, k, k, options)
@@ -204,7 +204,7 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
 
     for (const kernel::FibreChain& chain : element.fibres.chains)
         element.segments += chain.points.size();
-    check_memory(double(element.segments), "", element, cloth, ends, picks);
+    element.memory = checked_memory(double(element.segments), "", element, cloth, ends, picks);
     const std::vector<kernel::FibreSegment> segments = kernel::fibre_segments(element.fibres);
     element.overlap_fraction = overlap_fraction(element.fibres, segments);
     element.mass_g_per_m2 = mass_of(element.fibres, segments, cloth);

@@ -9,6 +9,8 @@ namespace rapport {
 /// is an index into yarn_kinds().
 enum FibreKind : uint32_t { kWarpFibre = 0, kWeftFibre = 1 };
 
+constexpr double kMostMemory = 4e9; ///< that all fibres of a measurement may take [bytes]
+
 /// The repeat of a cloth as explicit fibres, in µm: x = weft, y = warp, z = face; end 1 and pick 1
 /// lie at half a spacing from the origin; z = 0 is the cloth's middle.
 struct MicroElement {
@@ -16,6 +18,7 @@ struct MicroElement {
 
     int repeats_x = 1, repeats_y = 1; ///< draft repeats per cell, more than one where twist asks
     size_t segments = 0;
+    double memory = 0;                     ///< that it takes to trace light in it, at most [bytes]
     double thickness_um = 0;               ///< of the yarns' outlines
     double warp_cover = 0, weft_cover = 0; ///< shares of area that the yarns' outlines cover
     double cover_factor = 0;               ///< of both together

@@ -142,6 +142,10 @@ void run(const VgspOptions& options, const CommonOptions& common) {
     std::filesystem::remove(measure.checkpoint.path);
     if (common.quiet)
         return;
+    if (result.realisations < measure.realisations)
+        fmt::print(stderr, "{}: {} of {} realisations: each takes {:.2g} GB, all may take {:.2g}\n",
+                   path.string(), result.realisations, measure.realisations,
+                   result.element.memory * 1e-9, kMostMemory * 1e-9);
     const BsdfTable& table = result.table;
     fmt::print("{}: accuracy {:.4f} on {} bins, {} incident directions, {} paths\n{}\n",
                output.string(), table.largest_accuracy(), 2 * table.exits.bins(),

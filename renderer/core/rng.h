@@ -15,6 +15,7 @@ enum class Purpose : uint32_t {
     scramble,
     test,
     realisation,
+    walk,
 };
 
 /// Counter-based random numbers (Philox4x32-10; Salmon et al. 2011, "Parallel Random Numbers: As

@@ -57,4 +57,9 @@ glm::vec2 Sampler::next_2d() {
             unit_float(sobol::owen_scramble(sobol::second_dimension(index), seeds.y))};
 }
 
+CounterRng Sampler::stream() {
+    const uint64_t high = rng_.bits();
+    return {high << 32 | rng_.bits(), Purpose::walk, 0, 0};
+}
+
 } // namespace rapport

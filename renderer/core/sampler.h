@@ -16,6 +16,8 @@ class Sampler {
 
     float next_1d();     ///< [0, 1)
     glm::vec2 next_2d(); ///< [0, 1)²
+    /// Independent numbers, as many as a walk of unknown length takes; other ones at each call.
+    CounterRng stream();
 
   private:
     Kind kind_;

@@ -12,12 +12,17 @@ constexpr float kShadowShare = 1 - 1e-4f;
 
 float mean(const Rgb& c) { return (c.r + c.g + c.b) * (1 / 3.0f); }
 
-float balance(float chosen, float other) { return chosen / (chosen + other); }
+constexpr float kOnlyWay = std::numeric_limits<float>::infinity();
 
-/// The last scattering event of the path.
+/// Weight of a direction that was found with density `chosen`, and could have been with `other`.
+float balance(float chosen, float other) {
+    return chosen == kOnlyWay ? 1 : chosen / (chosen + other);
+}
+
+/// The last scattering event of the path, or the camera.
 struct Scattering {
     glm::vec3 position;
-    float pdf; ///< of the direction it took
+    float pdf; ///< of the direction it took; kOnlyWay where no light sample could have found it
 };
 
 /// Whether a direction lies on the same side by the geometry as by the shading frame. Where it
@@ -42,6 +47,15 @@ Frame frame_for(const SurfacePoint& point, const glm::vec3& eye) {
     frame.y = y / length;
     frame.x = glm::cross(frame.y, frame.z);
     return frame;
+}
+
+/// Russian roulette: whether a path goes on, then weighted for those that do not.
+bool survives(Rgb& throughput, Sampler& sampler) {
+    const float survival = std::min(1.0f, std::max({throughput.r, throughput.g, throughput.b}));
+    if (!(sampler.next_1d() < survival))
+        return false;
+    throughput /= survival;
+    return true;
 }
 
 /// Light scattered towards the eye out of one sampled direction of one sampled light.
@@ -72,30 +86,28 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
     return arriving * (balance(density, pdf) / density);
 }
 
-Rgb escaped_radiance(const Scene& scene, const glm::vec3& direction,
-                     const std::optional<Scattering>& last) {
+Rgb escaped_radiance(const Scene& scene, const glm::vec3& direction, const Scattering& last) {
     Rgb radiance(0);
     for (const auto& [light, probability] : scene.distant_lights()) {
         const Rgb escaped = light->escaped(direction);
         if (escaped == Rgb(0))
             continue;
-        radiance += last ? escaped * balance(last->pdf, probability * light->escaped_pdf(direction))
-                         : escaped;
+        radiance += escaped * balance(last.pdf, probability * light->escaped_pdf(direction));
     }
     return radiance;
 }
 
 Rgb emitted_radiance(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
-                     const std::optional<Scattering>& last) {
+                     const Scattering& last) {
     const AreaLight* const light = point.surface->area_light.get();
     if (!light)
         return Rgb(0);
     const Rgb emitted = light->emitted(point.geometric_normal, -direction);
-    if (emitted == Rgb(0) || !last)
+    if (emitted == Rgb(0) || last.pdf == kOnlyWay)
         return emitted;
     const float density = scene.choice_probability(*light) *
-                          light->pdf(point.position - last->position, point.geometric_normal);
-    return emitted * balance(last->pdf, density);
+                          light->pdf(point.position - last.position, point.geometric_normal);
+    return emitted * balance(last.pdf, density);
 }
 
 } // namespace
@@ -103,7 +115,7 @@ Rgb emitted_radiance(const Scene& scene, const SurfacePoint& point, const glm::v
 PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
     PathResult path;
     Rgb throughput(1);
-    std::optional<Scattering> last;
+    Scattering last{ray.org, kOnlyWay};
     int depth = 0;
     for (int layers = 0; layers <= Scene::kMaxLayers;) {
         const std::optional<SurfacePoint> point = scene.intersect(ray);
@@ -111,13 +123,36 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
             path.radiance += throughput * escaped_radiance(scene, ray.dir, last);
             break;
         }
-        if (depth == 0 && layers == 0)
+        const bool first = depth == 0 && layers == 0;
+        if (first)
             path.first = point;
         path.radiance += throughput * emitted_radiance(scene, *point, ray.dir, last);
+
+        if (const auto& fibres = point->surface->fibres) {
+            if (depth == scene.settings.max_depth)
+                break;
+            CounterRng rng = sampler.stream();
+            const auto passage = fibres->follow(point->position, ray.dir, rng);
+            if (!passage)
+                break;
+            if (passage->scattered) {
+                if (first)
+                    path.albedo = passage->weight;
+                throughput *= passage->weight;
+                last = {passage->position, kOnlyWay};
+                if (++depth > kRouletteDepth && !survives(throughput, sampler))
+                    break;
+            }
+            ray = {offset_origin(*point, *passage), passage->direction};
+            layers = passage->scattered ? 0 : layers + 1;
+            continue;
+        }
 
         const Frame frame = frame_for(*point, -ray.dir);
         const glm::vec3 eye = frame.to_local(-ray.dir);
         const Bsdf& material = *point->surface->material;
+        if (first)
+            path.albedo = material.albedo(eye);
         const Rgb unscattered = material.unscattered(eye);
         if (const float pass = std::min(mean(unscattered), 1.0f); pass > 0) {
             if (sampler.next_1d() < pass) {
@@ -141,14 +176,7 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
         if (!sides_agree(*point, direction, sample->light))
             break;
         throughput *= sample->weight;
-        if (depth > kRouletteDepth) {
-            const float survival =
-                std::min(1.0f, std::max({throughput.r, throughput.g, throughput.b}));
-            if (!(sampler.next_1d() < survival))
-                break;
-            throughput /= survival;
-        }
-        if (throughput == Rgb(0))
+        if (throughput == Rgb(0) || (depth > kRouletteDepth && !survives(throughput, sampler)))
             break;
         last = Scattering{point->position, sample->pdf};
         ray = {offset_origin(*point, direction), direction};

@@ -10,6 +10,7 @@ namespace rapport {
 struct PathResult {
     Rgb radiance{0};
     std::optional<SurfacePoint> first; ///< what the camera ray met, whether or not it scattered
+    Rgb albedo{0};                     ///< of that; of explicit fibres, what this path saw of them
 };
 
 /// Follows one camera path against the light.

@@ -32,12 +32,8 @@ FilmSample take_sample(const Scene& scene, const CameraRays& rays, int x, int y,
     if (!path.first)
         return {path.radiance};
     const SurfacePoint& point = *path.first;
-    return {path.radiance,
-            true,
-            point.surface->material->albedo(point.frame.to_local(-ray.dir)),
-            point.frame.z,
-            point.frame.y,
-            rays.depth(point.position)};
+    return {path.radiance, true,          path.albedo,
+            point.frame.z, point.frame.y, rays.depth(point.position)};
 }
 
 /// Brings tiles to the samples that are planned for each, all of them evenly.

@@ -26,6 +26,7 @@ class DistantLight final : public Light {
     float power() const override {
         return static_cast<float>(kPi) * square(scene_radius_) * luminance(radiance_);
     }
+    bool is_delta() const override { return true; }
 
   private:
     glm::vec3 towards_light_;

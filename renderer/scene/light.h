@@ -42,6 +42,8 @@ class Light {
     /// Emitted power, up to a common factor, by which lights are chosen to be sampled; 0 for one
     /// that is left to rays that happen to meet it.
     virtual float power() const = 0;
+    /// Whether it is seen from a single direction, which no path meets that is not aimed at it.
+    virtual bool is_delta() const { return false; }
 };
 
 struct LightContext {

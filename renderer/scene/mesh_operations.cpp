@@ -57,4 +57,14 @@ glm::vec3 triangle_warp(const TriangleMesh& mesh, uint32_t index) {
     return (a.x * q - b.x * p) / determinant;
 }
 
+TriangleMesh box(const glm::vec3& low, const glm::vec3& high) {
+    TriangleMesh mesh;
+    for (int corner = 0; corner < 8; ++corner)
+        mesh.positions.emplace_back(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
+                                    corner & 4 ? high.z : low.z);
+    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return mesh;
+}
+
 } // namespace rapport

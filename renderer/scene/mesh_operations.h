@@ -19,4 +19,7 @@ void orient_by_normals(TriangleMesh& mesh);
 /// area.
 glm::vec3 triangle_warp(const TriangleMesh& mesh, uint32_t index);
 
+/// The box between two corners, its faces outwards.
+TriangleMesh box(const glm::vec3& low, const glm::vec3& high);
+
 } // namespace rapport

@@ -118,6 +118,14 @@ Rgb Scene::transmittance(const glm::vec3& from, const glm::vec3& direction, floa
         const std::optional<SurfacePoint> point = intersect(ray);
         if (!point)
             return passed;
+        if (point->surface->fibres) {
+            const auto passage = point->surface->fibres->pass(point->position, direction);
+            if (!passage)
+                return Rgb(0);
+            ray.org = offset_origin(*point, *passage);
+            ray.tfar = distance - glm::dot(ray.org - from, direction);
+            continue;
+        }
         passed *= point->surface->material->unscattered(point->frame.to_local(-direction));
         if (passed == Rgb(0))
             return passed;
@@ -147,6 +155,14 @@ glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction) {
     const float distance = 16 * std::numeric_limits<float>::epsilon() * point.reach;
     return point.position + std::copysign(distance, glm::dot(direction, point.geometric_normal)) *
                                 point.geometric_normal;
+}
+
+glm::vec3 offset_origin(const SurfacePoint& entry, const PlacedFibres::Passage& passage) {
+    SurfacePoint exit = entry;
+    exit.position = passage.position;
+    exit.geometric_normal = passage.normal;
+    exit.reach = std::max(entry.reach, largest_coordinate(passage.position));
+    return offset_origin(exit, passage.direction);
 }
 
 } // namespace rapport

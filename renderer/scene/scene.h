@@ -6,9 +6,11 @@
 #include "renderer/scene/camera.h"
 #include "renderer/scene/light.h"
 #include "renderer/scene/mesh.h"
+#include "renderer/scene/placed_fibres.h"
 #include "renderer/scene/render_settings.h"
 
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -21,6 +23,8 @@ struct Surface {
     Rgb emission{0};                             ///< radiance of the face side
     bool two_sided_emission = false;             ///< of the other side too
     std::shared_ptr<const AreaLight> area_light; ///< set by Scene's constructor where it shines
+    /// What the mesh is only the box of; the material then tells of nothing but the albedo.
+    std::optional<PlacedFibres> fibres = std::nullopt;
 };
 
 /// What a ray met, ready for shading.
@@ -45,7 +49,8 @@ class Scene {
 
     std::optional<SurfacePoint> intersect(const kernel::Ray& ray) const;
     /// Share of light that passes from `from` along unit `direction` up to `distance`: 0 where
-    /// something opaque stands between, the product of unscattered beams through cloths. After
+    /// something opaque stands between, the product of unscattered beams through cloths; through
+    /// explicit fibres 1 where the ray meets none. After
     /// `kMaxLayers` cloths it is 0.
     Rgb transmittance(const glm::vec3& from, const glm::vec3& direction, float distance) const;
     static constexpr int kMaxLayers = 1000;
@@ -85,5 +90,7 @@ class Scene {
 /// Wächter & Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection", who offset by
 /// up to 256 units in the last place of each coordinate.
 glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction);
+/// The same for what left the box of fibres that it had met in `entry`.
+glm::vec3 offset_origin(const SurfacePoint& entry, const PlacedFibres::Passage& passage);
 
 } // namespace rapport

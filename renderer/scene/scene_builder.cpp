@@ -4,9 +4,11 @@
 #include "renderer/scene/mesh_operations.h"
 #include "renderer/scene/shape.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <set>
+#include <stdexcept>
 
 namespace rapport {
 namespace {
@@ -61,6 +63,7 @@ class Builder {
                                                    : fmt::format("a material of its own: {}",
                                                                  fmt::join(names_met_, ", ")),
                                 fmt::format("\"{}\" for {}", name, file.string()));
+        check_fibres_are_lit(surfaces, lights);
         return Scene(std::move(surfaces), std::move(lights), description_.camera,
                      description_.settings);
     }
@@ -85,6 +88,8 @@ class Builder {
             Surface surface;
             surface.mesh = std::move(part.mesh);
             transform(surface.mesh, shape.to_world);
+            if (part.fibres)
+                place_fibres(part.fibres, shape, surface);
             if (shape.reverse_orientation)
                 reverse_orientation(surface.mesh);
             surface.material = bsdf(material);
@@ -92,6 +97,34 @@ class Builder {
                 set_emission(*shape.area_light, surface);
             surfaces.push_back(std::move(surface));
         }
+    }
+
+    static void place_fibres(const std::shared_ptr<const FibreSwatch>& fibres,
+                             const ShapeDescription& shape, Surface& surface) {
+        if (shape.area_light)
+            throw FileError(shape.params.path(), shape.params.line(), "fibres that do not shine",
+                            "an area light");
+        try {
+            surface.fibres.emplace(fibres, shape.to_world);
+        } catch (const std::invalid_argument&) {
+            throw FileError(shape.params.path(), shape.params.line(),
+                            "a transform of turns, moves and scales common to all axes",
+                            "one that deforms the fibres");
+        }
+    }
+
+    void check_fibres_are_lit(const std::vector<Surface>& surfaces,
+                              const std::vector<std::shared_ptr<Light>>& lights) const {
+        if (std::ranges::none_of(surfaces, [](const Surface& s) { return s.fibres.has_value(); }))
+            return;
+        for (size_t i = 0; i < lights.size(); ++i)
+            if (lights[i]->is_delta()) {
+                const LightDescription& light = description_.lights[i];
+                throw FileError(light.params.path(), light.params.line(),
+                                "lights of some size where there is a Shape \"fibers\", for no "
+                                "path through smooth fibres meets a point or a single direction",
+                                fmt::format("LightSource \"{}\"", light.type));
+            }
     }
 
     /// In this order: the caller's cloth for a glTF part by its name, or for all parts; the scene's

@@ -11,10 +11,14 @@
 
 namespace rapport {
 
+class FibreSwatch;
+
 /// A piece of a shape that wears one material.
 struct ShapePart {
     TriangleMesh mesh;    ///< in the shape's own space
     std::string material; ///< the name that the shape's file gives it, or empty
+    /// What the mesh is only the box of, with a metre to 10⁶ of its units.
+    std::shared_ptr<const FibreSwatch> fibres = nullptr;
 };
 
 /// What a shape is made from.

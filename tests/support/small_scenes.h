@@ -73,14 +73,7 @@ inline TriangleMesh level_square(float half, float z) {
     return parallelogram({-half, -half, z}, {2 * half, 0, 0}, {0, 2 * half, 0});
 }
 /// The cube |x|, |y|, |z| ≤ half, faces outwards.
-inline TriangleMesh cube(float half) {
-    TriangleMesh mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.positions.push_back(half * glm::vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    return mesh;
-}
+inline TriangleMesh cube(float half) { return box(glm::vec3(-half), glm::vec3(half)); }
 
 inline Surface surface(TriangleMesh mesh, std::shared_ptr<const Bsdf> material,
                        float emission = 0) {

@@ -158,7 +158,7 @@ TEST(SceneLights, AConstantSkyIsLeftToScattering) {
 TEST(Registries, HoldWhatIsShipped) {
     EXPECT_EQ(LightRegistry::instance().names(), (std::vector<std::string>{"distant", "infinite"}));
     EXPECT_EQ(ShapeRegistry::instance().names(),
-              (std::vector<std::string>{"gltf", "plymesh", "trianglemesh"}));
+              (std::vector<std::string>{"fibers", "gltf", "plymesh", "trianglemesh"}));
 }
 
 class SceneBuilder : public testing::Test {

@@ -1,0 +1,103 @@
+#pragma once
+
+#include "materials/table/bsdf_table.h"
+#include "renderer/integrator/path_tracer.h"
+#include "renderer/scene/fibre_swatch.h"
+#include "tests/support/small_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+
+// A flat swatch under one disc of light of unit radiance and 5° half-angle, seen from afar. Its
+// pixels are L = ∫_disc f(light → eye) cosθ_light dω = ∫_disc I(eye → ω) dω by reciprocity: the
+// share of the light arriving from the eye's direction that leaves into the disc.
+
+namespace rapport::tests {
+
+constexpr double kDegree = kPi / 180;
+constexpr double kDiscHalfAngle = 5 * kDegree;
+
+/// An eye at a node of the table's grid, and the middle of the disc.
+struct EyeAndLight {
+    IncidentDirection eye;
+    double light_theta, light_phi; ///< [°] from the face's normal; beyond 90° = transmitted. The
+                                   ///< disc must not cover what the unscattered beam shows.
+    glm::dvec3 light() const {
+        return spherical_direction(light_theta * kDegree, light_phi * kDegree);
+    }
+};
+
+/// `table` with the directions that `fine`, a partial table, has too replaced by its.
+inline void put_in(const BsdfTable& fine, BsdfTable& table) {
+    const size_t stride = table.intensity.size() / table.directions();
+    const size_t bands = table.bands.count();
+    for (size_t f = 0; f < fine.directions(); ++f)
+        for (size_t d = 0; d < table.directions(); ++d)
+            if (table.incident[d].side == fine.incident[f].side &&
+                std::abs(table.incident[d].theta - fine.incident[f].theta) < 1e-6 &&
+                std::abs(table.incident[d].phi - fine.incident[f].phi) < 1e-6) {
+                std::copy_n(fine.intensity.begin() + f * stride, stride,
+                            table.intensity.begin() + d * stride);
+                std::copy_n(fine.unscattered.begin() + bands * f, bands,
+                            table.unscattered.begin() + bands * d);
+                table.accuracy[d] = fine.accuracy[f];
+            }
+}
+
+inline Surface fibre_surface(const std::shared_ptr<const FibreSwatch>& swatch,
+                             const glm::mat4& to_world = glm::mat4(1)) {
+    Surface made = surface(box(1e-6 * swatch->low(), 1e-6 * swatch->high()), diffuse(0));
+    transform(made.mesh, to_world);
+    made.fibres.emplace(swatch, to_world);
+    return made;
+}
+
+inline std::shared_ptr<const Bsdf> cloth_of(std::shared_ptr<const TableBsdf> table) {
+    Params params("test", "cloth", 1);
+    Param file;
+    file.type = "string";
+    file.name = "filename";
+    file.strings = {"swatch.bsdf"};
+    params.add(file);
+    return make_material("cloth", {params, "", [&](const auto&, const auto&) { return table; }});
+}
+
+struct Estimate {
+    double mean, variance;
+};
+
+/// Green radiance of the swatch, a level surface around the origin, over a square window of half
+/// width `half` [m]. The disc is so far away that all of the window sees it alike.
+inline Estimate seen_under_disc(Surface swatch, const glm::dvec3& eye, const glm::dvec3& light,
+                                float half, int samples, int max_depth,
+                                double half_angle = kDiscHalfAngle) {
+    constexpr int kEdges = 256, kPixels = 8;
+    const float distance = 1e4f * half;
+    const glm::vec3 centre = distance * glm::vec3(light);
+    const Frame frame = Frame::about(-glm::vec3(light));
+    const float radius = distance * static_cast<float>(std::tan(half_angle));
+    TriangleMesh disc;
+    disc.positions.push_back(centre);
+    for (int i = 0; i < kEdges; ++i) {
+        const float angle = 2 * kPi * i / kEdges;
+        disc.positions.push_back(centre +
+                                 radius * (std::cos(angle) * frame.x + std::sin(angle) * frame.y));
+        disc.triangles.push_back({0, 1 + i, 1 + (i + 1) % kEdges});
+    }
+    std::vector<Surface> surfaces;
+    surfaces.push_back(std::move(swatch));
+    surfaces.push_back(surface(disc, diffuse(0), 1));
+    const Scene scene(std::move(surfaces), {},
+                      parallel_camera(1e3f * half * glm::vec3(eye), {}, half, kPixels),
+                      settings(samples, max_depth));
+    const Image image = render(scene).image();
+    Estimate estimate{0, 0};
+    constexpr int kCount = kPixels * kPixels;
+    for (int i = 0; i < kCount; ++i) {
+        estimate.mean += (*image.find("G"))[i] / kCount;
+        estimate.variance += (*image.find("variance.G"))[i] / (double(kCount) * kCount);
+    }
+    return estimate;
+}
+
+} // namespace rapport::tests

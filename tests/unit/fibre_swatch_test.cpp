@@ -1,0 +1,140 @@
+#include "renderer/core/error.h"
+#include "renderer/integrator/path_tracer.h"
+#include "renderer/scene/fibre_swatch.h"
+#include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/scene_builder.h"
+#include "tests/support/file_bytes.h"
+#include "tests/support/swatch.h"
+#include "tests/support/temporary_folder.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace rapport {
+namespace {
+
+/// Without dyes: nothing but the cap on events takes light away.
+Cloth white_plain() {
+    Cloth cloth = read_cloth(RAPPORT_SOURCE_DIR "/scenes/cloths/viscose-plain.toml");
+    for (FibreSpec* fibre : {&cloth.warp.fibre, &cloth.weft.fibre}) {
+        fibre->color.reset();
+        fibre->absorption_per_um.reset();
+        fibre->surface_absorption = 0;
+    }
+    cloth.colourways.clear();
+    return cloth;
+}
+
+std::shared_ptr<const FibreSwatch> swatch(double size_um) {
+    return std::make_shared<const FibreSwatch>(white_plain(), glm::dvec2(size_um), "");
+}
+
+double mean_green(const Scene& scene) {
+    const Image image = render(scene).image();
+    double sum = 0;
+    for (const float value : *image.find("G"))
+        sum += value;
+    return sum / (image.width * image.height);
+}
+
+TEST(FibreSwatch, DisappearsInAFurnace) {
+    // Clear fibres under a sky of one radiance look like the sky, whichever way light takes, also
+    // where a diffuse white plate behind them is seen through them and lit through them.
+    const auto fibres = swatch(800);
+    for (const float plate : {0.0f, 1.0f}) {
+        std::vector<Surface> surfaces;
+        surfaces.push_back(tests::fibre_surface(fibres));
+        if (plate > 0)
+            surfaces.push_back(
+                tests::surface(tests::level_square(2e-4f, -4e-4f), tests::diffuse(plate)));
+        const Scene scene(std::move(surfaces), {tests::sky(1)},
+                          tests::parallel_camera({2e-3f, 1e-3f, 3e-3f}, {}, 3e-4f, 8),
+                          tests::settings(64, 200));
+        EXPECT_NEAR(mean_green(scene), 1, 1e-3) << plate;
+    }
+}
+
+TEST(FibreSwatch, ShadowsTheLightThatItsFibresStop) {
+    // A plate under the swatch, seen from below: in a furnace again, but a twin without gaps
+    // between the yarns, to whose shadow the unscattered light adds twice, would be brighter than
+    // the sky.
+    std::vector<Surface> surfaces;
+    surfaces.push_back(tests::fibre_surface(swatch(3000)));
+    TriangleMesh plate = tests::level_square(1e-4f, -1e-4f);
+    surfaces.push_back(tests::surface(plate, tests::diffuse(1)));
+    const Scene scene(std::move(surfaces), {tests::sky(1)},
+                      tests::parallel_camera({0, 0, 1e-2f}, {}, 5e-5f, 8),
+                      tests::settings(64, 400));
+    EXPECT_NEAR(mean_green(scene), 1, 3e-3);
+}
+
+TEST(FibreSwatch, LooksTheSameAtEverySizeAndPlace) {
+    const auto fibres = swatch(800);
+    const auto radiance = [&](const glm::mat4& to_world) {
+        std::vector<Surface> surfaces;
+        surfaces.push_back(tests::fibre_surface(fibres, to_world));
+        surfaces.push_back(tests::surface(tests::level_square(1e-3f, 2e-3f), tests::diffuse(0), 1));
+        transform(surfaces[1].mesh, to_world);
+        reverse_orientation(surfaces[1].mesh);
+        Camera camera = tests::parallel_camera({5e-4f, 3e-4f, 1e-3f}, {}, 2e-4f, 8);
+        const float scale = glm::length(glm::vec3(to_world[0]));
+        camera.to_world = to_world * camera.to_world;
+        for (int axis = 0; axis < 3; ++axis)
+            camera.to_world[axis] /= scale;
+        camera.screen_window *= scale;
+        return mean_green(Scene(std::move(surfaces), {}, camera, tests::settings(1024, 200)));
+    };
+    const double here = radiance(glm::mat4(1));
+    EXPECT_GT(here, 0.02);
+    glm::mat4 far = glm::rotate(glm::mat4(1), 1.0f, glm::normalize(glm::vec3(1, 2, 3)));
+    far = glm::scale(far, glm::vec3(1000));
+    far[3] = {3, -2, 1, 1};
+    EXPECT_NEAR(radiance(far), here, 0.05 * here); // four standard errors
+}
+
+TEST(FibreSwatch, EndsAtItsSides) {
+    const auto fibres = swatch(300);
+    CounterRng rng(3, Purpose::test, 0, 0);
+    int sides = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const glm::dvec3 from{300 * (rng.uniform() - 0.5), 300 * (rng.uniform() - 0.5),
+                              fibres->high().z};
+        const auto passage = fibres->follow(from, glm::normalize(glm::dvec3(0.5, 0.3, -0.4)), rng);
+        ASSERT_TRUE(passage);
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_GE(passage->position[axis], fibres->low()[axis] - 1e-6);
+            EXPECT_LE(passage->position[axis], fibres->high()[axis] + 1e-6);
+        }
+        EXPECT_GT(glm::dot(passage->direction, passage->normal), 0);
+        EXPECT_NEAR(glm::length(passage->direction), 1, 1e-9);
+        sides += passage->normal.z == 0;
+    }
+    EXPECT_GT(sides, 200);
+}
+
+void expect_refused(const std::string& lines, const std::string& expected) {
+    const tests::TemporaryFolder folder;
+    const auto path = folder / "scene.pbrt";
+    tests::write_bytes(path, "Camera \"perspective\"\nWorldBegin\n" + lines);
+    std::vector<std::string> warnings;
+    try {
+        build_scene(parse_pbrt(path), {}, warnings);
+        ADD_FAILURE() << lines;
+    } catch (const FileError& error) {
+        EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+    }
+}
+
+TEST(FibreSwatch, RefusesWhatCannotBeRendered) {
+    const std::string fibers = fmt::format("Shape \"fibers\" \"string filename\" \"{}\" ",
+                                           RAPPORT_SOURCE_DIR "/scenes/cloths/silk-charmeuse.toml");
+    expect_refused("LightSource \"distant\"\n" + fibers, "lights of some size");
+    expect_refused("Scale 1 1 2\n" + fibers, "transform of turns");
+    expect_refused("AreaLightSource \"diffuse\"\n" + fibers, "do not shine");
+    expect_refused(fibers + "\"float width\" -1", "metres above 0");
+    expect_refused(fibers + "\"string colourway\" \"mauve\"", "colourway");
+    expect_refused("Shape \"fibers\"", "string filename");
+}
+
+} // namespace
+} // namespace rapport
