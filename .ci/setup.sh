@@ -36,6 +36,7 @@ long=(
   clang                   # libFuzzer comes with it alone
   libclang-rt-14-dev      # sanitizer and fuzzing runtimes for clang
   debootstrap             # a clean system to try the set-up in
+  python3-matplotlib      # draws the charts of tests/bench/charts
 )
 
 case "${1:-tests}" in
