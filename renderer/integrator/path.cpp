@@ -65,7 +65,7 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
     const Rgb passed = scene.transmittance(origin, light->direction, distance * kShadowShare);
     if (passed == Rgb(0))
         return Rgb(0);
-    const Rgb arriving = scattered * passed * light->radiance;
+    const Rgb arriving = scattered * point.reflectance() * passed * light->radiance;
     if (light->delta)
         return arriving / choice->probability;
     const float density = choice->probability * light->pdf;
@@ -140,7 +140,7 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
         const glm::vec3 direction = glm::normalize(frame.to_world(sample->light));
         if (!sides_agree(*point, direction, sample->light))
             break;
-        throughput *= sample->weight;
+        throughput *= sample->weight * point->reflectance();
         if (depth > kRouletteDepth) {
             const float survival =
                 std::min(1.0f, std::max({throughput.r, throughput.g, throughput.b}));

@@ -34,7 +34,7 @@ FilmSample take_sample(const Scene& scene, const CameraRays& rays, int x, int y,
     const SurfacePoint& point = *path.first;
     return {path.radiance,
             true,
-            point.surface->material->albedo(point.frame.to_local(-ray.dir)),
+            point.surface->material->albedo(point.frame.to_local(-ray.dir)) * point.reflectance(),
             point.frame.z,
             point.frame.y,
             rays.depth(point.position)};

@@ -57,7 +57,7 @@ std::vector<ShapePart> make_gltf(const ShapeContext& context) {
     for (const GltfPart& part : model.parts)
         parts.push_back({refine(part, level, context.needs_uvs(part.material),
                                 fmt::format("{}: {}", path.string(), part.name), context.warnings),
-                         part.material});
+                         part.material, part.base_color});
     return parts;
 }
 

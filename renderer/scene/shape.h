@@ -3,6 +3,7 @@
 #include "renderer/core/params.h"
 #include "renderer/core/registry.h"
 #include "renderer/scene/mesh.h"
+#include "renderer/scene/picture.h"
 
 #include <filesystem>
 #include <functional>
@@ -15,6 +16,8 @@ namespace rapport {
 struct ShapePart {
     TriangleMesh mesh;    ///< in the shape's own space
     std::string material; ///< the name that the shape's file gives it, or empty
+    /// What it wears where the scene states no material.
+    BaseColor base_color{};
 };
 
 /// What a shape is made from.
