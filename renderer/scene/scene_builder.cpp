@@ -77,8 +77,13 @@ class Builder {
             const MaterialPointer material = material_for(shape, name);
             return material && material->type == "cloth";
         };
+        const auto seen_length = [&](const glm::dvec3& a, const glm::dvec3& b) {
+            const glm::dmat4 to_world(shape.to_world);
+            return description_.camera.seen_length(to_world * glm::dvec4(a, 1),
+                                                   to_world * glm::dvec4(b, 1));
+        };
         std::vector<ShapePart> parts =
-            make_shape(shape.type, {shape.params, base_dir_, needs_uvs, warnings_});
+            make_shape(shape.type, {shape.params, base_dir_, needs_uvs, warnings_, seen_length});
         for (ShapePart& part : parts) {
             const MaterialPointer material = material_for(shape, part.material);
             if (material && part.mesh.uvs.empty() &&

@@ -27,6 +27,9 @@ struct ShapeContext {
     /// Whether the part with this material name needs UVs, because a cloth lies along them.
     std::function<bool(const std::string& material)> needs_uvs;
     std::vector<std::string>& warnings; ///< what was ignored or mended is appended, a line each
+    /// Under how many pixels the camera sees the segment between two points of the shape's space
+    /// (Camera::seen_length).
+    std::function<double(const glm::dvec3&, const glm::dvec3&)> seen_length;
 };
 
 using ShapeFactory = std::function<std::vector<ShapePart>(const ShapeContext&)>;
