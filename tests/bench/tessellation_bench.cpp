@@ -106,7 +106,7 @@ int main(int count, char** arguments) {
         };
         for (const double level : {0, 1, 2, 3, 4, 6, 8, 12})
             row("level", level);
-        for (const double pixels : {32, 16, 8, 6, 4, 3, 2, 1.5, 1, 0.7})
+        for (const double pixels : {32.0, 16.0, 8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0, 0.7})
             row("edgelength", pixels);
     }
 }
