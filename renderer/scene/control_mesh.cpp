@@ -1,6 +1,7 @@
 #include "renderer/scene/control_mesh.h"
 
 #include "renderer/scene/disjoint_sets.h"
+#include "renderer/scene/t_junctions.h"
 
 #include <cmath>
 #include <optional>
@@ -118,6 +119,7 @@ ControlMesh make_control_mesh(const IndexedMesh& mesh, const std::vector<char>& 
     control.smooth_group.resize(corners);
     for (uint32_t c = 0; c < corners; ++c)
         control.smooth_group[c] = smooth.find(c);
+    control.t_junctions = hold_t_junctions(control);
     make_faces(control, options.quads);
     return control;
 }

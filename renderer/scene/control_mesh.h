@@ -30,6 +30,7 @@ struct ControlMesh {
     /// Per corner: corners of a vertex with the same number share a normal.
     std::vector<uint32_t> smooth_group{};
     std::vector<Face> faces{}; ///< all triangles, in order
+    size_t t_junctions = 0;    ///< vertices (t_junctions.h)
     bool has_quads = false;    ///< then it is Catmull & Clark's surface, else Loop's
 
     uint32_t vertex(uint32_t side) const {

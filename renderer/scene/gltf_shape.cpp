@@ -1,4 +1,5 @@
 #include "renderer/core/error.h"
+#include "renderer/scene/auto_uvs.h"
 #include "renderer/scene/gltf.h"
 #include "renderer/scene/shape.h"
 #include "renderer/scene/subdivision.h"
@@ -11,9 +12,9 @@ namespace rapport {
 namespace {
 
 constexpr int kHighestLevel = 64;
-/// Where the error of the picture has come down to that of rendering 64 samples a pixel
-/// (tests/bench/charts/tessellation.svg) [pixels].
-constexpr float kDefaultEdgeLength = 4;
+/// Where facets make less of an error than the noise of 64 samples a pixel, and a model that fills a
+/// picture of 1024² takes about a second (tests/bench/charts/tessellation.svg) [pixels].
+constexpr float kDefaultEdgeLength = 2;
 /// Into how many pieces an edge is cut at most, also right before the camera.
 constexpr int kHighestRate = 256;
 constexpr float kDefaultCreaseAngle = 30; ///< [degrees]
@@ -25,6 +26,7 @@ std::string summary(const CleaningReport& dropped, const SubdivisionReport& coun
          {std::pair{dropped.degenerate, "triangles with two corners at one point dropped"},
           {dropped.repeated, "triangles that lie on another dropped"},
           {counts.non_manifold_edges, "non-manifold edges cut"},
+          {counts.t_junctions, "vertices on other edges (T-junctions) held there"},
           {counts.unrefinable, "faces that cannot be subdivided left flat"},
           {counts.mirrored, "faces with mirrored UVs, with which the cloth is not mirrored"},
           {counts.frames_repaired, "vertices given the warp direction of their neighbours"}})
@@ -79,25 +81,33 @@ TriangleMesh refine(const GltfPart& part, const SubdivisionOptions& options, boo
 /// A glTF or GLB model, metres, in glTF's axes (+y up); one part per primitive, subdivided.
 ///     "string filename"   required
 ///     "float edgelength"  edges are cut into pieces that are seen under this many pixels at most,
-///                         if they stand square to the view; default 4
+///                         if they stand square to the view; default 2
 ///     "integer level"     instead, each edge is cut into so many; 0 = the triangles as they are
 ///     "float creaseangle" edges where the file's normals differ by more stay sharp [degrees];
 ///                         default 30
 ///     "bool quads"        joins pairs of triangles that were quads before they were exported, and
 ///                         subdivides by Catmull & Clark's rules instead of Loop's; default false
+///     "bool autouv"       gives parts without UVs some (auto_uvs.h), so that a cloth can lie on
+///     them;
+///                         default false: it is an error there
 std::vector<ShapePart> make_gltf(const ShapeContext& context) {
     const Params& params = context.params;
     const std::string filename = params.get_string("filename", "");
     if (filename.empty())
         params.fail("filename", "\"string filename\" of a .gltf or .glb", "none");
     SubdivisionOptions options = subdivision(context);
+    const bool auto_uvs = params.get_bool("autouv", false);
     const bool flat = params.has("level") && params.get_int("level", 0) == 0;
     const std::filesystem::path path = context.base_dir / filename;
-    const GltfModel model = read_gltf(path);
+    GltfModel model = read_gltf(path);
     for (const std::string& warning : model.warnings)
         context.warnings.push_back(fmt::format("{}: {}", path.string(), warning));
     std::vector<ShapePart> parts;
-    for (const GltfPart& part : model.parts) {
+    for (GltfPart& part : model.parts) {
+        if (auto_uvs && part.mesh.uv_index.empty()) {
+            add_auto_uvs(part.mesh);
+            part.base_color.picture = nullptr; // it was not made for these
+        }
         options.need_uvs = context.needs_uvs(part.material);
         parts.push_back({refine(part, options, flat,
                                 fmt::format("{}: {}", path.string(), part.name), context.warnings),

@@ -189,6 +189,7 @@ TriangleMesh subdivide(const IndexedMesh& input, const SubdivisionOptions& optio
         if (!complete)
             continue;
         counts.non_manifold_edges = control.cut.non_manifold_edges;
+        counts.t_junctions = control.t_junctions;
         counts.creases = count_creases(control);
         counts.quads = mesh.position_index.size() - control.faces.size();
         result.triangles = std::move(tessellation->triangles);

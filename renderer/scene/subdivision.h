@@ -20,6 +20,7 @@ struct SubdivisionReport {
     size_t faces = 0;              ///< triangles of the mesh after cleaning
     size_t dropped = 0;            ///< triangles without area of their own (mesh_cleaning.h)
     size_t non_manifold_edges = 0; ///< cut, and kept straight so that the pieces still meet
+    size_t t_junctions = 0;        ///< vertices on another edge, kept on its straight line
     size_t unrefinable = 0;        ///< faces that keep their flat triangles
     size_t creases = 0;            ///< edges that stay sharp, as the file's normals are there
     size_t quads = 0;              ///< made of two triangles each

@@ -1,5 +1,6 @@
 #include "renderer/scene/subdivision.h"
 
+#include "renderer/scene/auto_uvs.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/limit_surface.h"
 #include "renderer/scene/pbrt_parser.h"
@@ -243,6 +244,64 @@ TEST(Quads, FramesAreTheDerivatives) {
     expect_true_frames([](float, float) { return 0.0f; }, true);
 }
 
+/// Two sheets that touch along x = 1 without being joined; the right one has twice as many vertices
+/// there, and both rise towards it.
+IndexedMesh sheets_with_t_junctions() {
+    IndexedMesh mesh = sheet(2, [](float x, float) { return x * x; });
+    const IndexedMesh fine = sheet(4, [](float x, float) { return (1 - x) * (1 - x); });
+    const auto offset = static_cast<uint32_t>(mesh.positions.size());
+    for (const glm::vec3& p : fine.positions)
+        mesh.positions.push_back(p + glm::vec3(1, 0, 0));
+    for (const glm::uvec3& t : fine.position_index)
+        mesh.position_index.push_back(t + offset);
+    for (glm::vec3& p : mesh.positions) // the line on which they touch bends at its middle vertex
+        p.x += 0.3f * std::abs(p.y - 0.5f);
+    return mesh;
+}
+
+TEST(TJunctions, StayOnTheLineOnWhichPiecesTouch) {
+    const IndexedMesh mesh = sheets_with_t_junctions();
+    SubdivisionOptions options;
+    options.rate = uniform_rate(4);
+    SubdivisionReport report;
+    const TriangleMesh result = subdivide(mesh, options, "sheets", &report);
+    EXPECT_EQ(report.t_junctions, 2u);
+    size_t on_line = 0;
+    for (const glm::vec3& p : result.positions)
+        if (std::abs(p.z - 1) < 1e-5f) {
+            ++on_line;
+            EXPECT_NEAR(p.x, 1 + 0.3f * std::abs(p.y - 0.5f), 1e-6f);
+        }
+    EXPECT_EQ(on_line, 9u + 17u); // 2 edges of 4 pieces on the left, 4 on the right
+    // Pieces that are apart by more than a thousandth of the edge are none.
+    IndexedMesh apart = mesh;
+    for (size_t v = 9; v < apart.positions.size(); ++v)
+        apart.positions[v].x += 1e-2f;
+    subdivide(apart, options, "sheets", &report);
+    EXPECT_EQ(report.t_junctions, 0u);
+}
+
+TEST(AutoUvs, HangTheWarpVertically) {
+    IndexedMesh mesh = icosahedron();
+    add_auto_uvs(mesh);
+    SubdivisionReport report;
+    const TriangleMesh result = subdivide(mesh, options(3, true), "icosahedron", &report);
+    EXPECT_EQ(report.mirrored, 0u);
+    EXPECT_EQ(report.frames_repaired, 0u);
+    expect_closed_manifold(result);
+    expect_sound(result);
+    for (size_t v = 0; v < result.positions.size(); ++v) {
+        const glm::vec3 n = glm::abs(result.normals[v]);
+        const bool on_side = n.y < 0.3f * std::max(n.x, n.z);
+        if (on_side) { // the warp climbs straight up: its part across is that of the surface
+            const glm::vec3 across = glm::cross(result.normals[v], glm::vec3(0, 1, 0));
+            EXPECT_LT(std::abs(glm::dot(glm::normalize(result.warp[v]), glm::normalize(across))),
+                      0.6f);
+            EXPECT_GT(result.warp[v].y, 0.5f);
+        }
+    }
+}
+
 TEST(SeenLength, IsThatOnTheFilmWhereASegmentStandsSquare) {
     Camera camera;
     camera.resolution = {400, 200};
@@ -288,7 +347,7 @@ TEST(GltfShape, IsCutAsFinelyAsItIsSeen) {
     EXPECT_LE(few, 18u);
     EXPECT_GT(triangles(near, "\"float edgelength\" 1"), 20 * few);
     EXPECT_EQ(triangles(far, "\"float edgelength\" 9"), 2u);
-    EXPECT_EQ(triangles(far, ""), triangles(far, "\"float edgelength\" 4"));
+    EXPECT_EQ(triangles(far, ""), triangles(far, "\"float edgelength\" 2"));
     for (const auto& [parameters, expected] :
          {std::pair{"\"float edgelength\" 0", "above 0"},
           {"\"float edgelength\" 2 \"integer level\" 2", "either"},
