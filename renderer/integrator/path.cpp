@@ -12,7 +12,8 @@ constexpr float kShadowShare = 1 - 1e-4f;
 
 float mean(const Rgb& c) { return (c.r + c.g + c.b) * (1 / 3.0f); }
 
-float balance(float chosen, float other) { return chosen / (chosen + other); }
+/// 1 where the chosen direction is a mirror's, whose density is infinite.
+float balance(float chosen, float other) { return 1 / (1 + other / chosen); }
 
 /// The last scattering event of the path.
 struct Scattering {

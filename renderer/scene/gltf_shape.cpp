@@ -12,8 +12,8 @@ namespace rapport {
 namespace {
 
 constexpr int kHighestLevel = 64;
-/// Where facets make less of an error than the noise of 64 samples a pixel, and a model that fills a
-/// picture of 1024² takes about a second (tests/bench/charts/tessellation.svg) [pixels].
+/// Where facets make less of an error than the noise of 64 samples a pixel, and a model that fills
+/// a picture of 1024² takes about a second (tests/bench/charts/tessellation.svg) [pixels].
 constexpr float kDefaultEdgeLength = 2;
 /// Into how many pieces an edge is cut at most, also right before the camera.
 constexpr int kHighestRate = 256;
