@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -24,10 +25,13 @@ struct BsdfValue {
     float pdf; ///< as of `Bsdf::pdf`
 };
 
+/// The `pdf` of a sample in a direction that has no density, as a mirror's.
+inline constexpr float kMirror = std::numeric_limits<float>::infinity();
+
 struct BsdfSample {
     glm::vec3 light; ///< sampled direction
     Rgb weight;      ///< f·|cosθ_light| / pdf
-    float pdf;       ///< [1/sr]; of scattering only, see `unscattered`
+    float pdf;       ///< [1/sr], or kMirror; of scattering only, see `unscattered`
 };
 
 /// How light scatters where it meets a surface. Constant after construction.
@@ -37,14 +41,14 @@ class Bsdf {
 
     /// f·|cosθ_light| for both sides of the surface, without the unscattered beam.
     virtual Rgb eval(const glm::vec3& eye, const glm::vec3& light) const = 0;
-    /// Density of `sample` over solid angle [1/sr]; integrates to 1 over the sphere (or to 0, if
-    /// nothing scatters from `eye`).
+    /// Density of `sample` over solid angle [1/sr]; integrates over the sphere to the chance that
+    /// `sample` gives a direction: 1, or less where light is lost, and 0 for mirrors.
     virtual float pdf(const glm::vec3& eye, const glm::vec3& light) const = 0;
     /// `eval` and `pdf` of one pair of directions, where a material can share the work.
     virtual BsdfValue eval_and_pdf(const glm::vec3& eye, const glm::vec3& light) const {
         return {eval(eye, light), pdf(eye, light)};
     }
-    /// A direction of density `pdf`; nothing if no light scatters. `choice` and `u` are uniform in
+    /// A direction of density `pdf`; nothing if the light is lost. `choice` and `u` are uniform in
     /// [0, 1).
     virtual std::optional<BsdfSample> sample(const glm::vec3& eye, float choice,
                                              const glm::vec2& u) const = 0;

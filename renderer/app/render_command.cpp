@@ -2,6 +2,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/progress.h"
 #include "renderer/integrator/path_tracer.h"
+#include "renderer/integrator/streaks.h"
 #include "renderer/scene/model_scene.h"
 #include "renderer/scene/pbrt_parser.h"
 #include "renderer/scene/scene_builder.h"
@@ -22,6 +23,7 @@ struct RenderOptions {
     std::vector<std::string> cloths, colourways, outputs;
     int samples = 0;  ///< 0 = as the scene says
     double error = 0; ///< 0 = none is asked for
+    std::string aov;  ///< drawn instead of the picture
     double accuracy = 0.2;
 };
 
@@ -153,6 +155,8 @@ void run(const RenderOptions& options, const CommonOptions& common) {
     for (const std::string& colourway : options.colourways)
         command += " --colourway " + colourway;
     Image image = film.image();
+    if (options.aov == "warp")
+        image = warp_streaks(image, scene.camera);
     image.attributes["command"] = command;
     image.attributes["seed"] = std::to_string(common.seed);
     image.attributes["samples"] = samples;
@@ -191,6 +195,10 @@ void add_render_command(CLI::App& app, const CommonOptions& common) {
                      "Relative noise to reach in the picture and in 95 % of its tiles")
         ->check(CLI::Range(1e-4, 1.0))
         ->excludes(samples);
+    command
+        ->add_option("--aov", options->aov,
+                     "Draws something else instead: warp, streaks along the warp threads")
+        ->check(CLI::IsMember({"warp"}));
     command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels");
     command
         ->add_option("--accuracy", options->accuracy,

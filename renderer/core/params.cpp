@@ -50,6 +50,15 @@ bool Params::has(std::string_view name) const {
     return find(name) != nullptr;
 }
 
+std::optional<std::string> Params::take_texture(std::string_view name) {
+    const Param* param = find(name);
+    if (!param || param->type != "texture")
+        return std::nullopt;
+    const std::string texture = find_typed(name, {"texture"}, 1)->strings[0];
+    params_.erase(params_.begin() + (param - params_.data()));
+    return texture;
+}
+
 const Param* Params::find(std::string_view name) const {
     const auto found = std::ranges::find(params_, name, &Param::name);
     return found == params_.end() ? nullptr : &*found;

@@ -3,6 +3,7 @@
 #include "renderer/core/bands.h"
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -31,6 +32,8 @@ class Params {
     /// A second parameter of the same name is a FileError.
     void add(Param param);
     bool has(std::string_view name) const;
+    /// Takes out the parameter `name` if it is of type "texture", and returns the texture's name.
+    std::optional<std::string> take_texture(std::string_view name);
 
     float get_float(std::string_view name, float fallback) const;
     int get_int(std::string_view name, int fallback) const;

@@ -14,15 +14,15 @@ float mean(const Rgb& c) { return (c.r + c.g + c.b) * (1 / 3.0f); }
 
 constexpr float kOnlyWay = std::numeric_limits<float>::infinity();
 
-/// Weight of a direction that was found with density `chosen`, and could have been with `other`.
-float balance(float chosen, float other) {
-    return chosen == kOnlyWay ? 1 : chosen / (chosen + other);
-}
+/// Weight of a direction that was found with density `chosen`, and could have been with `other`; 1
+/// where the chosen is infinite.
+float balance(float chosen, float other) { return 1 / (1 + other / chosen); }
 
 /// The last scattering event of the path, or the camera.
 struct Scattering {
     glm::vec3 position;
-    float pdf; ///< of the direction it took; kOnlyWay where no light sample could have found it
+    float pdf; ///< of the direction it took; kOnlyWay where no light sample could have found it,
+               ///< as from a mirror
 };
 
 /// Whether a direction lies on the same side by the geometry as by the shading frame. Where it
@@ -79,7 +79,7 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
     const Rgb passed = scene.transmittance(origin, light->direction, distance * kShadowShare);
     if (passed == Rgb(0))
         return Rgb(0);
-    const Rgb arriving = scattered * passed * light->radiance;
+    const Rgb arriving = scattered * point.reflectance() * passed * light->radiance;
     if (light->delta)
         return arriving / choice->probability;
     const float density = choice->probability * light->pdf;
@@ -152,7 +152,7 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
         const glm::vec3 eye = frame.to_local(-ray.dir);
         const Bsdf& material = *point->surface->material;
         if (first)
-            path.albedo = material.albedo(eye);
+            path.albedo = material.albedo(eye) * point->reflectance();
         const Rgb unscattered = material.unscattered(eye);
         if (const float pass = std::min(mean(unscattered), 1.0f); pass > 0) {
             if (sampler.next_1d() < pass) {
@@ -175,7 +175,7 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
         const glm::vec3 direction = glm::normalize(frame.to_world(sample->light));
         if (!sides_agree(*point, direction, sample->light))
             break;
-        throughput *= sample->weight;
+        throughput *= sample->weight * point->reflectance();
         if (throughput == Rgb(0) || (depth > kRouletteDepth && !survives(throughput, sampler)))
             break;
         last = Scattering{point->position, sample->pdf};

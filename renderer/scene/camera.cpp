@@ -1,13 +1,23 @@
 #include "renderer/scene/camera.h"
 
+#include <algorithm>
+
 namespace rapport {
+namespace {
+
+/// The part of the screen that is on the film: x0, x1, y0, y1.
+glm::vec4 screen_window(const Camera& camera) {
+    const glm::vec2 size(camera.resolution);
+    const glm::vec2 half = size / std::min(size.x, size.y);
+    return camera.screen_window == glm::vec4(0) ? glm::vec4(-half.x, half.x, -half.y, half.y)
+                                                : camera.screen_window;
+}
+
+} // namespace
 
 CameraRays::CameraRays(const Camera& camera) {
     const glm::vec2 size(camera.resolution);
-    const glm::vec2 half = size / std::min(size.x, size.y);
-    const glm::vec4 window = camera.screen_window == glm::vec4(0)
-                                 ? glm::vec4(-half.x, half.x, -half.y, half.y)
-                                 : camera.screen_window;
+    const glm::vec4 window = screen_window(camera);
     // Film to screen: x from left to right, y from the top, which is the window's upper end.
     const glm::mat3 screen((window.y - window.x) / size.x, 0, 0, //
                            0, (window.z - window.w) / size.y, 0, //
@@ -28,6 +38,21 @@ CameraRays::CameraRays(const Camera& camera) {
 kernel::Ray CameraRays::operator()(const glm::vec2& pixel) const {
     const glm::vec3 film(pixel, 1);
     return {eye_ + origin_ * film, glm::normalize(direction_ * film)};
+}
+
+double Camera::seen_length(const glm::dvec3& a, const glm::dvec3& b) const {
+    const glm::dvec3 eye(to_world[3]), along = b - a;
+    const double length = glm::length(along);
+    const glm::dvec4 window(rapport::screen_window(*this));
+    const double pixel = std::min((window.y - window.x) / resolution.x * glm::length(to_world[0]),
+                                  (window.w - window.z) / resolution.y * glm::length(to_world[1]));
+    if (!(length > 0))
+        return 0;
+    if (kind == Kind::orthographic)
+        return length / pixel;
+    const double place = std::clamp(glm::dot(eye - a, along) / (length * length), 0.0, 1.0);
+    const double distance = glm::distance(eye, a + place * along) / glm::length(to_world[2]);
+    return length / (distance * pixel * std::tan(radians(double{fov_degrees}) / 2));
 }
 
 kernel::Ray Camera::ray(const glm::vec2& pixel) const { return CameraRays(*this)(pixel); }

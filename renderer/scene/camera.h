@@ -15,6 +15,10 @@ struct Camera {
 
     /// The unit-direction ray through film position `pixel` (continuous, y down).
     kernel::Ray ray(const glm::vec2& pixel) const;
+    /// Length in pixels of the segment from `a` to `b` if it stood square to the view at its
+    /// nearest point: no less than it is seen to be, and the same from whatever side. Infinite
+    /// where it touches the eye.
+    double seen_length(const glm::dvec3& a, const glm::dvec3& b) const;
 };
 
 /// Generates a camera's rays; all that does not depend on the pixel is worked out once.

@@ -33,7 +33,7 @@ std::vector<ShapePart> make_fibers(const ShapeContext& context) {
     const Cloth cloth = path.extension() == ".wif" ? viscose_cloth(path) : read_cloth(path);
     const auto swatch = std::make_shared<const FibreSwatch>(
         cloth, 1e6 * glm::dvec2(width, height), params.get_string("colourway", ""), seed);
-    return {{box(1e-6 * swatch->low(), 1e-6 * swatch->high()), "", swatch}};
+    return {{box(1e-6 * swatch->low(), 1e-6 * swatch->high()), "", {}, swatch}};
 }
 
 const Registered<ShapeFactory> registered("fibers", make_fibers);

@@ -85,8 +85,8 @@ const tinygltf::Accessor& GltfAccessors::find(int accessor, const std::string& p
     return found;
 }
 
-GltfAccessors::View GltfAccessors::view(int buffer_view, size_t offset, size_t count,
-                                        size_t element_size, const std::string& place) const {
+std::span<const unsigned char> GltfAccessors::bytes(int buffer_view,
+                                                    const std::string& place) const {
     if (buffer_view < 0 || static_cast<size_t>(buffer_view) >= model_.bufferViews.size())
         fail(place, fmt::format("one of {} bufferViews", model_.bufferViews.size()),
              fmt::format("bufferView {}", buffer_view));
@@ -100,18 +100,25 @@ GltfAccessors::View GltfAccessors::view(int buffer_view, size_t offset, size_t c
              fmt::format("bufferView {} inside the {} bytes of its buffer", buffer_view,
                          bytes.size()),
              fmt::format("{} bytes from {}", view.byteLength, view.byteOffset));
-    const size_t stride = view.byteStride == 0 ? element_size : view.byteStride;
+    return std::span(bytes).subspan(view.byteOffset, view.byteLength);
+}
+
+GltfAccessors::View GltfAccessors::view(int buffer_view, size_t offset, size_t count,
+                                        size_t element_size, const std::string& place) const {
+    const std::span<const unsigned char> all = bytes(buffer_view, place);
+    const size_t byte_stride = model_.bufferViews[static_cast<size_t>(buffer_view)].byteStride;
+    const size_t stride = byte_stride == 0 ? element_size : byte_stride;
     if (stride < element_size)
         fail(place, fmt::format("a byteStride of {} or more", element_size),
              fmt::format("{}", stride));
-    const size_t room = view.byteLength;
+    const size_t room = all.size();
     if (offset > room || element_size > room - offset ||
         (count - 1) > (room - offset - element_size) / stride)
         fail(place,
              fmt::format("{} × {} bytes from {} inside bufferView {}", count, element_size, offset,
                          buffer_view),
              fmt::format("its {} bytes", room));
-    return {bytes.data() + view.byteOffset + offset, stride};
+    return {all.data() + offset, stride};
 }
 
 std::vector<uint64_t> GltfAccessors::sparse_indices(const tinygltf::Accessor& accessor,
@@ -195,6 +202,26 @@ std::vector<glm::vec2> GltfAccessors::vec2s(int accessor, const std::string& pla
 
 std::vector<glm::vec3> GltfAccessors::vec3s(int accessor, const std::string& place) const {
     return vectors<3>(accessor, TINYGLTF_TYPE_VEC3, place);
+}
+
+std::vector<glm::vec4> GltfAccessors::vec4s(int accessor, const std::string& place) const {
+    return vectors<4>(accessor, TINYGLTF_TYPE_VEC4, place);
+}
+
+std::vector<glm::mat4> GltfAccessors::mat4s(int index, const std::string& place) const {
+    const tinygltf::Accessor& accessor = find(index, place);
+    if (accessor.type != TINYGLTF_TYPE_MAT4 ||
+        accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
+        fail(place, "a MAT4 of floats", fmt::format("accessor {} of another type", index));
+    std::vector<glm::mat4> values(accessor.count, glm::mat4(0));
+    for_each_component(accessor, place, [&](size_t element, size_t c, double value) {
+        if (!std::isfinite(value))
+            fail(place, "finite numbers",
+                 fmt::format("{} in element {} of accessor {}", value, element, index));
+        values[element][static_cast<int>(c / 4)][static_cast<int>(c % 4)] =
+            static_cast<float>(value); // column by column, as GLM has them
+    });
+    return values;
 }
 
 std::vector<uint32_t> GltfAccessors::indices(int index, uint64_t limit,

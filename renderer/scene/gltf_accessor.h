@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <tiny_gltf.h>
 #include <vector>
@@ -17,8 +18,13 @@ class GltfAccessors {
     /// Finite coordinates; integers become numbers, normalised ones in [−1, 1] or [0, 1].
     std::vector<glm::vec2> vec2s(int accessor, const std::string& place) const;
     std::vector<glm::vec3> vec3s(int accessor, const std::string& place) const;
+    std::vector<glm::vec4> vec4s(int accessor, const std::string& place) const;
+    /// Floats only, finite.
+    std::vector<glm::mat4> mat4s(int accessor, const std::string& place) const;
     /// Unsigned integers, each below `limit`.
     std::vector<uint32_t> indices(int accessor, uint64_t limit, const std::string& place) const;
+    /// All bytes of a bufferView.
+    std::span<const unsigned char> bytes(int buffer_view, const std::string& place) const;
 
   private:
     struct View;

@@ -74,8 +74,13 @@ tinygltf::FsCallbacks plain_file_access() {
     return access;
 }
 
-bool ignore_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*,
-                  int, void*) {
+/// Images in bufferViews are left to GltfAccessors, because what tinygltf passes for those may lie
+/// beyond the buffer.
+bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+    if (image->bufferView < 0)
+        image->image.assign(bytes, bytes + size);
+    image->as_is = true;
     return true;
 }
 
@@ -156,7 +161,7 @@ tinygltf::Model load_gltf_file(const std::filesystem::path& path,
 
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks(plain_file_access());
-    loader.SetImageLoader(ignore_image, nullptr);
+    loader.SetImageLoader(keep_encoded, nullptr);
     const std::string folder = std::filesystem::absolute(path).parent_path().string();
     const auto size = static_cast<unsigned int>(file.size());
     tinygltf::Model model;

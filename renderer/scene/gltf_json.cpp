@@ -14,12 +14,25 @@ using Json = nlohmann::json;
 /// Deeper nesting than any glTF has; a parser that calls itself would run out of stack.
 constexpr int kMaxDepth = 64;
 
-constexpr std::array<std::string_view, 13> kIndices = {
-    "buffer",  "bufferView", "byteLength", "byteOffset", "byteStride", "componentType", "count",
-    "indices", "material",   "mesh",       "mode",       "scene",      "skin"};
-constexpr std::array<std::string_view, 2> kIndexLists = {"children", "nodes"};
-constexpr std::array<std::pair<std::string_view, size_t>, 4> kNumberLists = {
-    {{"translation", 3}, {"rotation", 4}, {"scale", 3}, {"matrix", 16}}};
+constexpr std::array<std::string_view, 22> kIndices = {
+    "buffer",   "bufferView",    "byteLength", "byteOffset", "byteStride",
+    "count",    "componentType", "index",      "indices",    "inverseBindMatrices",
+    "material", "mesh",          "mode",       "sampler",    "scene",
+    "skeleton", "skin",          "source",     "texCoord",   "wrapS",
+    "wrapT",    "magFilter"};
+constexpr std::array<std::string_view, 3> kIndexLists = {"children", "joints", "nodes"};
+/// Lists of numbers, by the section they stand in, and how long they are; 0 = any length.
+struct NumberList {
+    std::string_view section, name;
+    size_t length;
+};
+constexpr std::array<NumberList, 7> kNumberLists = {{{"nodes", "matrix", 16},
+                                                     {"nodes", "rotation", 4},
+                                                     {"nodes", "scale", 3},
+                                                     {"nodes", "translation", 3},
+                                                     {"nodes", "weights", 0},
+                                                     {"meshes", "weights", 0},
+                                                     {"materials", "baseColorFactor", 4}}};
 
 /// Geometry that is stored in a form which tinygltf does not decode.
 constexpr std::array<std::string_view, 3> kCompressions = {
@@ -52,7 +65,8 @@ class Checker {
             fail("asset.version", "\"2.0\"", asset["version"]);
         check_required_extensions(root);
         for (const char* section :
-             {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "materials"}) {
+             {"scenes", "nodes", "meshes", "skins", "accessors", "bufferViews", "buffers",
+              "materials", "textures", "samplers", "images"}) {
             if (!root.contains(section))
                 continue;
             if (!root[section].is_array())
@@ -111,9 +125,11 @@ class Checker {
             const std::string inner = place + "." + key;
             if (key == "extras" || key == "extensions")
                 continue;
-            if (key == "attributes" && value.is_object()) {
-                for (const auto& [name, accessor] : value.items())
-                    check_index(accessor, inner + "." + name);
+            if (key == "attributes") {
+                check_accessors(value, inner);
+            } else if (key == "targets" && value.is_array()) {
+                for (size_t i = 0; i < value.size(); ++i)
+                    check_accessors(value[i], fmt::format("{}[{}]", inner, i));
             } else if (contains(kIndexLists, key)) {
                 if (!value.is_array())
                     fail(inner, "an array", value);
@@ -130,18 +146,26 @@ class Checker {
                 for (size_t i = 0; value.is_array() && i < value.size(); ++i)
                     check_object(value[i], fmt::format("{}[{}]", inner, i));
             } else {
-                for (const auto& [name, length] : kNumberLists)
-                    if (key == name)
-                        check_numbers(value, length, inner);
+                for (const NumberList& list : kNumberLists)
+                    if (key == list.name && place.starts_with(list.section))
+                        check_numbers(value, list.length, inner);
             }
         }
     }
 
+    void check_accessors(const Json& attributes, const std::string& place) const {
+        if (!attributes.is_object())
+            fail(place, "an object", attributes);
+        for (const auto& [name, accessor] : attributes.items())
+            check_index(accessor, place + "." + name);
+    }
+
     void check_numbers(const Json& list, size_t length, const std::string& place) const {
-        const std::string expected = fmt::format("an array of {} numbers", length);
+        const std::string expected =
+            length > 0 ? fmt::format("an array of {} numbers", length) : "an array of numbers";
         if (!list.is_array())
             fail(place, expected, list);
-        if (list.size() != length)
+        if (length > 0 && list.size() != length)
             throw FileError(path_, place, expected, fmt::format("{}", list.size()));
         for (const Json& number : list)
             if (!number.is_number())
@@ -165,7 +189,8 @@ class Checker {
                              [&](std::string_view start) { return name.starts_with(start); }))
                 throw FileError(path_, "extensionsRequired", "extensions that are known here",
                                 "not supported: " + name);
-            warnings_.push_back(fmt::format("extension {} ignored: only geometry is read", name));
+            warnings_.push_back(
+                fmt::format("extension {} ignored: only geometry and base colour are read", name));
         }
     }
 

@@ -1,7 +1,8 @@
 #include "renderer/scene/gltf_primitive.h"
 
 #include "renderer/core/error.h"
-#include "renderer/scene/mesh_cleaning.h"
+#include "renderer/scene/gltf_material.h"
+#include "renderer/scene/gltf_skin.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -10,35 +11,21 @@
 namespace rapport {
 namespace {
 
-/// KHR_texture_transform of texture coordinate set 0, in glTF's v-down coordinates: scaled, turned
-/// counter-clockwise as the picture is seen, then moved.
-struct TextureTransform {
-    glm::dvec2 offset{0}, scale{1};
-    double rotation = 0;
-
-    glm::vec2 operator()(const glm::vec2& uv) const {
-        const glm::dvec2 scaled = scale * glm::dvec2(uv);
-        const double c = std::cos(rotation), s = std::sin(rotation);
-        return glm::dvec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x) + offset;
-    }
-};
-
 /// Reads one primitive; the members are what every step needs.
 class PrimitiveReader {
   public:
     PrimitiveReader(const tinygltf::Model& model, const GltfAccessors& accessors,
-                    const tinygltf::Primitive& primitive, const std::string& path,
-                    const std::string& place, std::vector<std::string>& warnings)
-        : model_(model), accessors_(accessors), primitive_(primitive), path_(path), place_(place),
-          warnings_(warnings) {}
+                    const tinygltf::Primitive& primitive, const GltfPose& pose,
+                    const std::string& path, const std::string& place,
+                    std::vector<std::string>& warnings)
+        : model_(model), accessors_(accessors), primitive_(primitive), pose_(pose), path_(path),
+          place_(place), warnings_(warnings) {}
 
-    IndexedMesh run() {
+    GltfPrimitive run() {
         if (primitive_.mode >= 0 && primitive_.mode < TINYGLTF_MODE_TRIANGLES) {
             warn("points and lines are ignored");
             return {};
         }
-        if (!primitive_.targets.empty())
-            warn("morph targets are ignored");
         const int positions = accessor_of("POSITION");
         if (positions < 0) {
             warn("a primitive without POSITION is ignored");
@@ -50,35 +37,28 @@ class PrimitiveReader {
             fail(place_ + ".material", fmt::format("one of {} materials", model_.materials.size()),
                  fmt::format("{}", primitive_.material));
 
-        IndexedMesh mesh;
+        GltfPrimitive result;
+        IndexedMesh& mesh = result.mesh;
         mesh.positions = accessors_.vec3s(positions, attribute_place("POSITION"));
         mesh.position_index = triangles(mesh.positions.size());
-        if (const int uvs = accessor_of("TEXCOORD_0"); uvs >= 0) {
-            mesh.uvs = accessors_.vec2s(uvs, attribute_place("TEXCOORD_0"));
-            check_count("TEXCOORD_0", mesh.uvs.size(), mesh.positions.size());
-            mesh.uv_index = mesh.position_index;
-            const TextureTransform transform = texture_transform();
-            for (glm::vec2& uv : mesh.uvs) {
-                uv = transform(uv);
-                uv.y = 1 - uv.y;
-                if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
-                    fail(attribute_place("TEXCOORD_0"), "UVs that stay finite when transformed",
-                         "an overflow");
-            }
-        }
+        add_morph_targets("POSITION", mesh.positions);
         if (const int normals = accessor_of("NORMAL"); normals >= 0) {
             mesh.normals = accessors_.vec3s(normals, attribute_place("NORMAL"));
-            check_count("NORMAL", mesh.normals.size(), mesh.positions.size());
+            check_count(attribute_place("NORMAL"), mesh.normals.size());
             mesh.normal_index = mesh.position_index;
+            add_morph_targets("NORMAL", mesh.normals);
         }
-        CleaningReport dropped;
-        mesh = clean(mesh, &dropped);
-        if (dropped.degenerate > 0)
-            warn(fmt::format("{} triangles with two corners at one point were dropped",
-                             dropped.degenerate));
-        if (dropped.repeated > 0)
-            warn(fmt::format("{} triangles that lie on another were dropped", dropped.repeated));
-        return mesh;
+        read_uvs(mesh);
+        if (pose_.joints) {
+            const SkinReport skin = apply_gltf_skin(primitive_, accessors_, *pose_.joints, path_,
+                                                    place_, mesh.positions, mesh.normals);
+            result.mirrored = skin.mirrored;
+            if (skin.unweighted > 0)
+                warn(fmt::format("{} vertices hang on no joint of the skin and stay in place",
+                                 skin.unweighted));
+        }
+        mesh = clean(mesh, &result.dropped);
+        return result;
     }
 
   private:
@@ -108,10 +88,53 @@ class PrimitiveReader {
                  fmt::format("not supported: {}", kDraco));
     }
 
-    void check_count(const std::string& attribute, size_t count, size_t expected) const {
+    void check_count(const std::string& place, size_t count) const {
+        const size_t expected =
+            model_.accessors[static_cast<size_t>(accessor_of("POSITION"))].count;
         if (count != expected)
-            fail(attribute_place(attribute), fmt::format("{} elements, as POSITION has", expected),
+            fail(place, fmt::format("{} elements, as POSITION has", expected),
                  fmt::format("{}", count));
+    }
+
+    void read_uvs(IndexedMesh& mesh) const {
+        const GltfUvs source = gltf_uvs(model_, primitive_, path_);
+        if (source.accessor < 0)
+            return;
+        const std::string place = attribute_place(source.attribute);
+        mesh.uvs = accessors_.vec2s(source.accessor, place);
+        check_count(place, mesh.uvs.size());
+        add_morph_targets(source.attribute, mesh.uvs);
+        for (glm::vec2& uv : mesh.uvs) {
+            uv = source.transform(uv);
+            uv.y = 1 - uv.y;
+            if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
+                fail(place, "UVs that stay finite when transformed", "an overflow");
+        }
+        mesh.uv_index = mesh.position_index;
+    }
+
+    /// Adds the displacements of each morph target, times its weight, to an attribute.
+    template <class Value>
+    void add_morph_targets(const std::string& attribute, std::vector<Value>& values) const {
+        const size_t targets = primitive_.targets.size();
+        if (!pose_.weights.empty() && pose_.weights.size() != targets)
+            fail(place_ + ".targets", fmt::format("{}, one for each weight", pose_.weights.size()),
+                 fmt::format("{}", targets));
+        for (size_t t = 0; t < pose_.weights.size(); ++t) {
+            const auto found = primitive_.targets[t].find(attribute);
+            const double weight = pose_.weights[t];
+            if (weight == 0 || found == primitive_.targets[t].end())
+                continue;
+            const std::string place = fmt::format("{}.targets[{}].{}", place_, t, attribute);
+            std::vector<Value> displacements;
+            if constexpr (Value::length() == 2)
+                displacements = accessors_.vec2s(found->second, place);
+            else
+                displacements = accessors_.vec3s(found->second, place);
+            check_count(place, displacements.size());
+            for (size_t v = 0; v < values.size(); ++v)
+                values[v] += static_cast<float>(weight) * displacements[v];
+        }
     }
 
     std::vector<glm::uvec3> triangles(size_t vertex_count) const {
@@ -144,48 +167,10 @@ class PrimitiveReader {
         return result;
     }
 
-    TextureTransform texture_transform() const {
-        TextureTransform transform;
-        if (primitive_.material < 0)
-            return transform;
-        const tinygltf::TextureInfo& texture =
-            model_.materials[static_cast<size_t>(primitive_.material)]
-                .pbrMetallicRoughness.baseColorTexture;
-        const auto found = texture.extensions.find("KHR_texture_transform");
-        if (found == texture.extensions.end())
-            return transform;
-        const tinygltf::Value& value = found->second;
-        const std::string place = fmt::format(
-            "materials[{}].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform",
-            primitive_.material);
-        int set = texture.texCoord;
-        if (value.Has("texCoord"))
-            set = static_cast<int>(number(value.Get("texCoord"), place + ".texCoord"));
-        if (set != 0) // it moves other coordinates than those that are read
-            return {};
-        if (value.Has("rotation"))
-            transform.rotation = number(value.Get("rotation"), place + ".rotation");
-        if (value.Has("offset"))
-            transform.offset = pair(value.Get("offset"), place + ".offset");
-        if (value.Has("scale"))
-            transform.scale = pair(value.Get("scale"), place + ".scale");
-        return transform;
-    }
-
-    double number(const tinygltf::Value& value, const std::string& place) const {
-        if (!value.IsNumber())
-            fail(place, "a number", "another type");
-        return value.GetNumberAsDouble();
-    }
-    glm::dvec2 pair(const tinygltf::Value& value, const std::string& place) const {
-        if (!value.IsArray() || value.ArrayLen() != 2)
-            fail(place, "an array of 2 numbers", "something else");
-        return {number(value.Get(0), place), number(value.Get(1), place)};
-    }
-
     const tinygltf::Model& model_;
     const GltfAccessors& accessors_;
     const tinygltf::Primitive& primitive_;
+    const GltfPose& pose_;
     const std::string& path_;
     const std::string& place_;
     std::vector<std::string>& warnings_;
@@ -193,10 +178,11 @@ class PrimitiveReader {
 
 } // namespace
 
-IndexedMesh read_gltf_primitive(const tinygltf::Model& model, const GltfAccessors& accessors,
-                                const tinygltf::Primitive& primitive, const std::string& path,
-                                const std::string& place, std::vector<std::string>& warnings) {
-    return PrimitiveReader(model, accessors, primitive, path, place, warnings).run();
+GltfPrimitive read_gltf_primitive(const tinygltf::Model& model, const GltfAccessors& accessors,
+                                  const tinygltf::Primitive& primitive, const GltfPose& pose,
+                                  const std::string& path, const std::string& place,
+                                  std::vector<std::string>& warnings) {
+    return PrimitiveReader(model, accessors, primitive, pose, path, place, warnings).run();
 }
 
 } // namespace rapport

@@ -25,12 +25,14 @@ float light_scale(const Params& params) {
     return scale;
 }
 
-Rgb light_radiance(const Params& params) {
-    const Rgb radiance = params.get_rgb("L", Rgb(1));
-    if (glm::any(glm::lessThan(radiance, Rgb(0))))
-        params.fail("L", "numbers that are 0 or more",
-                    fmt::format("[{} {} {}]", radiance.r, radiance.g, radiance.b));
-    return radiance * light_scale(params);
+Rgb light_color(const Params& params, const char* name) {
+    const Rgb color = params.get_rgb(name, Rgb(1));
+    if (glm::any(glm::lessThan(color, Rgb(0))))
+        params.fail(name, "numbers that are 0 or more",
+                    fmt::format("[{} {} {}]", color.r, color.g, color.b));
+    return color * light_scale(params);
 }
+
+Rgb light_radiance(const Params& params) { return light_color(params, "L"); }
 
 } // namespace rapport

@@ -59,6 +59,8 @@ using LightRegistry = Registry<LightFactory>;
 /// where one is not known.
 std::shared_ptr<Light> make_light(const std::string& name, const LightContext& context);
 
+/// The "rgb" `name` (default 1) times "float scale" (default 1), checked to be no less than 0.
+Rgb light_color(const Params& params, const char* name);
 /// "rgb L" (default 1) times "float scale" (default 1), checked to be no less than 0.
 Rgb light_radiance(const Params& params);
 /// "float scale", no less than 0; default 1.

@@ -22,29 +22,30 @@ using Cache =
 using Factory = Bfr::RefinerSurfaceFactory<Cache>;
 using Descriptor = Far::TopologyDescriptor;
 
-std::unique_ptr<const Far::TopologyRefiner> make_refiner(const ManifoldMesh& cut,
-                                                         const std::vector<char>& detached) {
-    std::vector<int> corners, creases, sharp;
-    for (size_t t = 0; t < cut.triangles.size(); ++t) {
-        if (detached[t])
+std::unique_ptr<const Far::TopologyRefiner> make_refiner(const ControlMesh& control) {
+    std::vector<int> sizes, corners, creases, sharp;
+    for (const Face& face : control.faces) {
+        if (control.detached[face.triangle()])
             continue;
-        for (int c = 0; c < 3; ++c) {
-            corners.push_back(static_cast<int>(cut.triangles[t][c]));
-            if (cut.straight[t][c]) {
-                creases.push_back(static_cast<int>(cut.triangles[t][c]));
-                creases.push_back(static_cast<int>(cut.triangles[t][(c + 1) % 3]));
+        sizes.push_back(static_cast<int>(face.size));
+        for (uint32_t i = 0; i < face.size; ++i) {
+            const uint32_t side = face.side[i];
+            corners.push_back(static_cast<int>(control.vertex(side)));
+            if (control.crease[side] ||
+                control.cut.straight[side / 3][static_cast<int>(side % 3)]) {
+                creases.push_back(static_cast<int>(control.vertex(side)));
+                creases.push_back(static_cast<int>(control.vertex(next_side(side))));
             }
         }
     }
-    for (uint32_t v = 0; v < cut.attached_vertices; ++v)
-        if (cut.pinned[v])
+    for (uint32_t v = 0; v < control.cut.attached_vertices; ++v)
+        if (control.cut.pinned[v])
             sharp.push_back(static_cast<int>(v));
-    const std::vector<int> sizes(corners.size() / 3, 3);
     const std::vector<float> sharpness(std::max(creases.size() / 2, sharp.size()),
                                        Sdc::Crease::SHARPNESS_INFINITE);
 
     Descriptor topology;
-    topology.numVertices = static_cast<int>(cut.attached_vertices);
+    topology.numVertices = static_cast<int>(control.cut.attached_vertices);
     topology.numFaces = static_cast<int>(sizes.size());
     topology.numVertsPerFace = sizes.data();
     topology.vertIndicesPerFace = corners.data();
@@ -58,14 +59,15 @@ std::unique_ptr<const Far::TopologyRefiner> make_refiner(const ManifoldMesh& cut
     Sdc::Options scheme;
     scheme.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
     using RefinerFactory = Far::TopologyRefinerFactory<Descriptor>;
-    std::unique_ptr<const Far::TopologyRefiner> refiner(
-        RefinerFactory::Create(topology, RefinerFactory::Options(Sdc::SCHEME_LOOP, scheme)));
+    std::unique_ptr<const Far::TopologyRefiner> refiner(RefinerFactory::Create(
+        topology, RefinerFactory::Options(
+                      control.has_quads ? Sdc::SCHEME_CATMARK : Sdc::SCHEME_LOOP, scheme)));
     if (!refiner)
         throw std::runtime_error("OpenSubdiv refused a manifold mesh");
     return refiner;
 }
 
-/// What evaluating one triangle needs; its storage is kept from triangle to triangle.
+/// What evaluating one face needs; its storage is kept from face to face.
 struct Patch {
     Bfr::Surface<double> surface;
     std::vector<int> control;           ///< vertices
@@ -77,35 +79,33 @@ struct Patch {
 struct LimitSurface::Implementation {
     std::unique_ptr<const Far::TopologyRefiner> refiner;
     Factory factory;
-    std::vector<int> face; ///< per triangle: number among the attached ones
+    std::vector<int> number; ///< per face: among the attached ones
     std::vector<double> positions;
     std::optional<LocalUvs> uvs;
 
-    Implementation(const ManifoldMesh& cut, const std::vector<char>& detached,
-                   const IndexedMesh& mesh)
-        : refiner(make_refiner(cut, detached)), factory(*refiner) {
+    explicit Implementation(const ControlMesh& control)
+        : refiner(make_refiner(control)), factory(*refiner) {
         int next = 0;
-        for (const char is_detached : detached)
-            face.push_back(is_detached ? -1 : next++);
-        for (uint32_t v = 0; v < cut.attached_vertices; ++v)
+        for (const Face& face : control.faces)
+            number.push_back(control.detached[face.triangle()] ? -1 : next++);
+        for (uint32_t v = 0; v < control.cut.attached_vertices; ++v)
             for (int i = 0; i < 3; ++i)
-                positions.push_back(mesh.positions[cut.origin[v]][i]);
-        if (!mesh.uv_index.empty())
-            uvs.emplace(cut, detached, mesh);
+                positions.push_back(control.mesh.positions[control.cut.origin[v]][i]);
+        if (!control.mesh.uv_index.empty())
+            uvs.emplace(control);
     }
 };
 
-LimitSurface::LimitSurface(const ManifoldMesh& cut, const std::vector<char>& detached,
-                           const IndexedMesh& mesh)
-    : implementation_(std::make_unique<Implementation>(cut, detached, mesh)) {}
+LimitSurface::LimitSurface(const ControlMesh& control)
+    : implementation_(std::make_unique<Implementation>(control)) {}
 
 LimitSurface::~LimitSurface() = default;
 
-bool LimitSurface::evaluate(uint32_t triangle, std::span<const glm::dvec2> parameters,
+bool LimitSurface::evaluate(uint32_t face, std::span<const glm::vec2> parameters,
                             std::span<LimitPoint> points) const {
     const Implementation& self = *implementation_;
     thread_local Patch patch;
-    if (!self.factory.InitVertexSurface(self.face[triangle], &patch.surface) ||
+    if (!self.factory.InitVertexSurface(self.number[face], &patch.surface) ||
         !patch.surface.IsValid())
         return false;
     const auto size = static_cast<size_t>(patch.surface.GetNumPatchPoints());
@@ -115,21 +115,23 @@ bool LimitSurface::evaluate(uint32_t triangle, std::span<const glm::dvec2> param
         patch.control.resize(static_cast<size_t>(patch.surface.GetNumControlPoints()));
         patch.surface.GetControlPointIndices(patch.control.data());
         patch.uvs.resize(2 * size);
-        self.uvs->gather(triangle, patch.control, patch.uvs);
+        self.uvs->gather(face, patch.control, patch.uvs);
         patch.surface.ComputePatchPoints(patch.uvs.data(), 2);
     }
     for (size_t i = 0; i < parameters.size(); ++i) {
         LimitPoint& p = points[i] = {};
-        patch.surface.Evaluate(&parameters[i].x, patch.positions.data(), 3, &p.position.x,
+        const glm::dvec2 parameter(parameters[i]);
+        patch.surface.Evaluate(&parameter.x, patch.positions.data(), 3, &p.position.x,
                                &p.position_s.x, &p.position_t.x);
         if (self.uvs)
-            patch.surface.Evaluate(&parameters[i].x, patch.uvs.data(), 2, &p.uv.x, &p.uv_s.x,
+            patch.surface.Evaluate(&parameter.x, patch.uvs.data(), 2, &p.uv.x, &p.uv_s.x,
                                    &p.uv_t.x);
     }
     return true;
 }
 
-LimitPoint flat_point(const IndexedMesh& mesh, uint32_t triangle, const glm::dvec2& parameter) {
+LimitPoint flat_point(const IndexedMesh& mesh, uint32_t triangle, const glm::vec2& at) {
+    const glm::dvec2 parameter(at);
     LimitPoint point{};
     const glm::uvec3 corner = mesh.position_index[triangle];
     const glm::dvec3 origin = mesh.positions[corner.x];

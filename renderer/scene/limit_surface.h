@@ -1,33 +1,34 @@
 #pragma once
 
-#include "renderer/scene/manifold.h"
+#include "renderer/scene/control_mesh.h"
 
 #include <memory>
 #include <span>
 
 namespace rapport {
 
-/// A point of a surface over the parameters (s, t) of one triangle: corner 0 is at (0, 0), corner 1
-/// at (1, 0), corner 2 at (0, 1). `uv` and its derivatives are 0 for a surface without UVs.
+/// A point of a surface over the parameters (s, t) of one face. In a triangle, corner 0 is at (0,
+/// 0), corner 1 at (1, 0), corner 2 at (0, 1); in a quad, they go round the unit square from (0,
+/// 0); triangles of Catmull & Clark's surface are parametrised in quarters, as Bfr does. `uv` and
+/// its derivatives are 0 for a surface without UVs.
 struct LimitPoint {
     glm::dvec3 position, position_s, position_t;
     glm::dvec2 uv, uv_s, uv_t;
 };
 
-/// The Loop limit surface of the attached triangles of a cut mesh, by OpenSubdiv's Bfr: position
-/// and UV with their exact first derivatives. Borders are smooth cubic B-splines with sharp
-/// corners where a triangle stands alone (EDGE_AND_CORNER); pinned vertices and straight sides are
-/// sharp. UVs go through the same limit rules as the positions, on both sides of a seam
-/// (local_uvs.h). Immutable and safe to share between threads; the mesh and its cut must outlive
-/// it.
+/// The limit surface of the attached faces of a control mesh, Loop's or, if it has quads, Catmull &
+/// Clark's, by OpenSubdiv's Bfr: position and UV with their exact first derivatives. Borders are
+/// smooth cubic B-splines with sharp corners where a face stands alone (EDGE_AND_CORNER); pinned
+/// vertices, straight sides and creases are sharp. UVs go through the same limit rules as the
+/// positions, on both sides of a seam (local_uvs.h). Immutable and safe to share between threads;
+/// the control mesh must outlive it.
 class LimitSurface {
   public:
-    LimitSurface(const ManifoldMesh& cut, const std::vector<char>& detached,
-                 const IndexedMesh& mesh);
+    explicit LimitSurface(const ControlMesh& control);
     ~LimitSurface();
 
-    /// Evaluates points of one attached triangle; false if it has no limit surface.
-    bool evaluate(uint32_t triangle, std::span<const glm::dvec2> parameters,
+    /// Evaluates points of one attached face; false if it has no limit surface.
+    bool evaluate(uint32_t face, std::span<const glm::vec2> parameters,
                   std::span<LimitPoint> points) const;
 
   private:
@@ -36,6 +37,6 @@ class LimitSurface {
 };
 
 /// The same for a flat triangle.
-LimitPoint flat_point(const IndexedMesh& mesh, uint32_t triangle, const glm::dvec2& parameter);
+LimitPoint flat_point(const IndexedMesh& mesh, uint32_t triangle, const glm::vec2& at);
 
 } // namespace rapport

@@ -1,35 +1,15 @@
 #include "renderer/scene/manifold.h"
 
+#include "renderer/scene/disjoint_sets.h"
 #include "renderer/scene/mesh_cleaning.h"
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace rapport {
 namespace {
 
 constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
-
-/// Disjoint sets; a set's name is its smallest member.
-class DisjointSets {
-  public:
-    explicit DisjointSets(size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), 0u);
-    }
-    uint32_t find(uint32_t i) {
-        while (parent_[i] != i)
-            i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = find(a), b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<uint32_t> parent_;
-};
 
 /// The triangle's corner at the edge's low or high vertex, numbered over all triangles.
 uint32_t low_corner(const EdgeUse& use) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -97,17 +98,26 @@ IndexedMesh clean(const IndexedMesh& mesh, CleaningReport* report) {
 }
 
 std::vector<EdgeUse> edge_uses(std::span<const glm::uvec3> triangles) {
-    std::vector<EdgeUse> uses;
-    uses.reserve(3 * triangles.size());
+    // Sorted by the low vertex in two linear passes, then the few of each vertex among themselves.
+    uint32_t vertices = 0;
+    for (const glm::uvec3& t : triangles)
+        vertices = std::max(vertices, std::max({t.x, t.y, t.z}) + 1);
+    std::vector<size_t> first(size_t{vertices} + 1, 0);
+    for (const glm::uvec3& t : triangles)
+        for (int c = 0; c < 3; ++c)
+            ++first[size_t{std::min(t[c], t[(c + 1) % 3])} + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<size_t> next(first.begin(), first.end());
+    std::vector<EdgeUse> uses(3 * triangles.size());
     for (uint32_t t = 0; t < triangles.size(); ++t)
         for (uint8_t c = 0; c < 3; ++c) {
             const uint32_t a = triangles[t][c], b = triangles[t][(c + 1) % 3];
-            uses.push_back({std::min(a, b), std::max(a, b), t, c, a < b});
+            uses[next[std::min(a, b)]++] = {std::min(a, b), std::max(a, b), t, c, a < b};
         }
-    std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-        return std::tie(a.low, a.high, a.triangle, a.corner) <
-               std::tie(b.low, b.high, b.triangle, b.corner);
-    });
+    for (uint32_t v = 0; v < vertices; ++v)
+        std::stable_sort(uses.begin() + static_cast<ptrdiff_t>(first[v]),
+                         uses.begin() + static_cast<ptrdiff_t>(first[v + 1]),
+                         [](const EdgeUse& a, const EdgeUse& b) { return a.high < b.high; });
     return uses;
 }
 

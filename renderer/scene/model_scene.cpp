@@ -18,7 +18,6 @@ constexpr float kSky = 0.5f; ///< radiance
 constexpr float kLampDistance = 10;     ///< from the model's centre, in radii of the model
 constexpr float kLampHalfAngle = 10;    ///< under which it is seen from there [degrees]
 constexpr float kLampIrradiance = 1.6f; ///< there, on what faces it
-constexpr float kGrey = 0.5f;
 
 class ParamsMaker {
   public:
@@ -117,7 +116,6 @@ ShapeDescription lamp(const std::filesystem::path& path, const Bounds& bounds,
                                      centre - right + up})
                        .integers("indices", {0, 2, 1, 0, 3, 2})
                        .done();
-    shape.material = std::make_shared<MaterialDescription>();
     shape.area_light =
         ParamsMaker(path, "the lamp's light").grey("L", kLampIrradiance / solid_angle).done();
     return shape;
@@ -137,12 +135,9 @@ SceneDescription describe_model(const std::filesystem::path& path, const glm::iv
     scene.lights = {{"infinite", ParamsMaker(path, "the sky").grey("L", kSky).done()}};
     scene.shapes.push_back(lamp(path, bounds, around_y(kAzimuth - 50, 45)));
 
-    auto grey = std::make_shared<MaterialDescription>();
-    grey->params = ParamsMaker(path, "the grey").grey("reflectance", kGrey).done();
     ShapeDescription shape;
     shape.type = "gltf";
     shape.params = ParamsMaker(path, "the model").text("filename", path.filename().string()).done();
-    shape.material = std::move(grey);
     scene.shapes.push_back(std::move(shape));
     return scene;
 }

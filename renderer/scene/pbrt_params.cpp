@@ -12,8 +12,9 @@ namespace {
 
 using Kind = PbrtToken::Kind;
 
-constexpr std::array kTypes{"bool",   "float", "integer", "normal", "normal3", "point",  "point2",
-                            "point3", "rgb",   "string",  "vector", "vector2", "vector3"};
+constexpr std::array kTypes{"bool",    "float",  "integer", "normal", "normal3",
+                            "point",   "point2", "point3",  "rgb",    "string",
+                            "texture", "vector", "vector2", "vector3"};
 
 bool fits_integer(double number) {
     return number == std::floor(number) && number >= std::numeric_limits<int32_t>::min() &&
@@ -40,7 +41,7 @@ Param read_declaration(PbrtLexer& lexer) {
 
 void read_value(PbrtLexer& lexer, Param& param) {
     const PbrtToken& token = lexer.peek();
-    if (param.type == "string") {
+    if (param.type == "string" || param.type == "texture") {
         if (token.kind != Kind::string)
             throw lexer.error(token, "a \"string\"");
         param.strings.push_back(token.text);

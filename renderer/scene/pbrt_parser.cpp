@@ -21,8 +21,7 @@ using Kind = PbrtToken::Kind;
 struct GraphicsState {
     glm::dmat4 ctm{1}; ///< current transformation matrix
     bool reverse_orientation = false;
-    std::shared_ptr<const MaterialDescription> material =
-        std::make_shared<const MaterialDescription>();
+    std::shared_ptr<const MaterialDescription> material;
     std::optional<Params> area_light;
 };
 
@@ -221,16 +220,50 @@ class Parser {
         return state;
     }
 
+    void texture() {
+        const PbrtToken token = lexer_->peek();
+        const std::string name = read_string("a texture's name in quotes");
+        for (const char* const only : {"spectrum", "imagemap"}) {
+            const PbrtToken kind = lexer_->peek();
+            const std::string expected = fmt::format("\"{}\"", only);
+            if (read_string(expected.c_str()) != only)
+                throw lexer_->error(kind, expected);
+        }
+        const auto [place, is_new] = textures_.try_emplace(name);
+        if (!is_new)
+            throw lexer_->error(token, "a new name", '"' + name + "\" for the second time");
+        place->second = std::make_shared<const TextureDescription>(
+            TextureDescription{read_params(name), scene_.path.parent_path()});
+    }
+
     std::shared_ptr<MaterialDescription> read_material(const std::string& owner) {
         auto material = std::make_shared<MaterialDescription>();
         material->params = read_params(owner);
         material->base_dir = scene_.path.parent_path();
         return material;
     }
+    /// Once its type is known: only a diffuse reflectance may be a texture.
+    void find_texture(MaterialDescription& material) {
+        if (material.type != "diffuse")
+            return;
+        const auto name = material.params.take_texture("reflectance");
+        if (!name)
+            return;
+        const auto found = textures_.find(*name);
+        if (found == textures_.end())
+            throw lexer_->error(directive_, known("texture", textures_), '"' + *name + '"');
+        material.reflectance = found->second;
+        Param white; // which the texture scales
+        white.type = "rgb";
+        white.name = "reflectance";
+        white.numbers = {1, 1, 1};
+        material.params.add(std::move(white));
+    }
     void material() {
         const std::string type = read_string("a material's type in quotes");
         const auto material = read_material(type);
         material->type = type;
+        find_texture(*material);
         state_.material = material;
     }
     void make_named_material() {
@@ -243,6 +276,7 @@ class Parser {
         material->type = material->params.get_string("type", "");
         if (material->type.empty())
             material->params.fail("type", "\"string type\"", "none");
+        find_texture(*material);
         scene_.named_materials[name] = material;
     }
     void named_material() {
@@ -284,6 +318,7 @@ class Parser {
     GraphicsState state_;
     std::vector<Saved> saved_;
     std::map<std::string, glm::dmat4> coordinate_systems_;
+    std::map<std::string, std::shared_ptr<const TextureDescription>> textures_;
     int include_depth_ = 0;
     bool in_world_ = false;
 };
@@ -314,6 +349,7 @@ const std::vector<Parser::Directive>& Parser::directives() {
         {"Sampler", Phase::options, &P::option<read_sampler>},
         {"Scale", Phase::any, &P::scale},
         {"Shape", Phase::world, &P::shape},
+        {"Texture", Phase::world, &P::texture},
         {"Transform", Phase::any, &P::transform},
         {"TransformBegin", Phase::world, &P::transform_begin},
         {"TransformEnd", Phase::world, &P::transform_end},

@@ -12,7 +12,8 @@ namespace rapport {
 /// "sobol" | "paddedsobol" | "zsobol" (the last three are one here); PixelFilter "box" (which is
 /// also the default: pbrt's own, a Gaussian, correlates pixels); Integrator "path"; ColorSpace
 /// "srgb". After it: AttributeBegin/End, TransformBegin/End, Material, MakeNamedMaterial,
-/// NamedMaterial, LightSource, AreaLightSource "diffuse", Shape. Anywhere: LookAt, Translate,
+/// NamedMaterial, Texture "spectrum" "imagemap" (for the reflectance of "diffuse"), LightSource,
+/// AreaLightSource "diffuse", Shape. Anywhere: LookAt, Translate,
 /// Rotate, Scale, Transform, ConcatTransform, Identity, CoordinateSystem, CoordSysTransform,
 /// ReverseOrientation, Include.
 ///

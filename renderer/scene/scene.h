@@ -6,6 +6,7 @@
 #include "renderer/scene/camera.h"
 #include "renderer/scene/light.h"
 #include "renderer/scene/mesh.h"
+#include "renderer/scene/picture.h"
 #include "renderer/scene/placed_fibres.h"
 #include "renderer/scene/render_settings.h"
 
@@ -20,8 +21,9 @@ namespace rapport {
 struct Surface {
     TriangleMesh mesh;
     std::shared_ptr<const Bsdf> material;
-    Rgb emission{0};                             ///< radiance of the face side
-    bool two_sided_emission = false;             ///< of the other side too
+    std::shared_ptr<const PictureTexture> reflectance; ///< multiplies what is scattered, if any
+    Rgb emission{0};                                   ///< radiance of the face side
+    bool two_sided_emission = false;                   ///< of the other side too
     std::shared_ptr<const AreaLight> area_light; ///< set by Scene's constructor where it shines
     /// What the mesh is only the box of; the material then tells of nothing but the albedo.
     std::optional<PlacedFibres> fibres = std::nullopt;
@@ -39,6 +41,9 @@ struct SurfacePoint {
     uint32_t triangle;
     float distance; ///< along the ray, whose direction is of unit length
     float reach;    ///< largest coordinate of the triangle: the scale of the rounding errors
+
+    /// What the surface's picture multiplies scattered light by.
+    Rgb reflectance() const { return surface->reflectance ? (*surface->reflectance)(uv) : Rgb(1); }
 };
 
 /// A scene, constant after construction.

@@ -1,6 +1,7 @@
 #include "renderer/scene/scene_builder.h"
 
 #include "renderer/core/error.h"
+#include "renderer/scene/imagemap.h"
 #include "renderer/scene/mesh_operations.h"
 #include "renderer/scene/shape.h"
 
@@ -76,23 +77,39 @@ class Builder {
 
     void add_shape(const ShapeDescription& shape, std::vector<Surface>& surfaces) {
         const auto needs_uvs = [&](const std::string& name) {
-            return material_for(shape, name)->type == "cloth";
+            const MaterialPointer material = material_for(shape, name);
+            return material && material->type == "cloth";
+        };
+        const auto seen_length = [&](const glm::dvec3& a, const glm::dvec3& b) {
+            const glm::dmat4 to_world(shape.to_world);
+            return description_.camera.seen_length(to_world * glm::dvec4(a, 1),
+                                                   to_world * glm::dvec4(b, 1));
         };
         std::vector<ShapePart> parts =
-            make_shape(shape.type, {shape.params, base_dir_, needs_uvs, warnings_});
+            make_shape(shape.type, {shape.params, base_dir_, needs_uvs, warnings_, seen_length});
         for (ShapePart& part : parts) {
             const MaterialPointer material = material_for(shape, part.material);
-            if (material->type == "cloth" && part.mesh.uvs.empty())
+            if (material && part.mesh.uvs.empty() &&
+                (material->type == "cloth" || material->reflectance))
                 throw FileError(shape.params.path(), shape.params.line(),
-                                "UVs, along which the cloth lies", "a mesh without");
+                                fmt::format("UVs, along which the {} lies",
+                                            material->reflectance ? "texture" : "cloth"),
+                                "a mesh without");
+            if (!material && part.base_color.picture && part.mesh.uvs.empty()) {
+                warnings_.push_back(part.base_color.picture->name +
+                                    " is left out: its mesh has no UVs");
+                part.base_color.picture = nullptr;
+            }
             Surface surface;
+            surface.material = material ? bsdf(material) : bsdf(part.base_color);
+            surface.reflectance =
+                material ? texture(material->reflectance) : texture(part.base_color);
             surface.mesh = std::move(part.mesh);
             transform(surface.mesh, shape.to_world);
             if (part.fibres)
                 place_fibres(part.fibres, shape, surface);
             if (shape.reverse_orientation)
                 reverse_orientation(surface.mesh);
-            surface.material = bsdf(material);
             if (shape.area_light)
                 set_emission(*shape.area_light, surface);
             surfaces.push_back(std::move(surface));
@@ -139,8 +156,40 @@ class Builder {
         if (const auto named = description_.named_materials.find(part);
             named != description_.named_materials.end())
             return named->second;
+        if (!shape.material)
+            return nullptr;
         const auto found = overrides_.find(shape.material->name);
         return found != overrides_.end() && !found->first.empty() ? found->second : shape.material;
+    }
+
+    static std::shared_ptr<const Bsdf> bsdf(const BaseColor& color) {
+        const Rgb reflectance = color.picture ? Rgb(1) : color.factor;
+        Param param;
+        param.type = "rgb";
+        param.name = "reflectance";
+        param.numbers = {reflectance.r, reflectance.g, reflectance.b};
+        Params params("", "a part's base colour", 0);
+        params.add(std::move(param));
+        return make_material("diffuse", {params, {}, {}});
+    }
+
+    std::shared_ptr<const PictureTexture>
+    texture(const std::shared_ptr<const TextureDescription>& description) {
+        if (!description)
+            return nullptr;
+        auto& made = textures_[description.get()];
+        if (!made)
+            made = make_imagemap(description->params, description->base_dir);
+        return made;
+    }
+
+    std::shared_ptr<const PictureTexture> texture(const BaseColor& color) {
+        if (!color.picture)
+            return nullptr;
+        auto& picture = pictures_[color.picture];
+        if (!picture)
+            picture = std::make_shared<Picture>(color.picture->bytes, color.picture->name);
+        return std::make_shared<PictureTexture>(picture, color.mapping, color.factor);
     }
 
     std::shared_ptr<const Bsdf> bsdf(const MaterialPointer& material) {
@@ -164,6 +213,8 @@ class Builder {
     std::filesystem::path base_dir_;
     std::map<std::string, MaterialPointer> overrides_;
     std::map<const MaterialDescription*, std::shared_ptr<const Bsdf>> materials_;
+    std::map<const TextureDescription*, std::shared_ptr<const PictureTexture>> textures_;
+    std::map<std::shared_ptr<const EncodedPicture>, std::shared_ptr<const Picture>> pictures_;
     std::set<std::string> names_met_;
 };
 

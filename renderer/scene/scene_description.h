@@ -16,11 +16,18 @@
 
 namespace rapport {
 
+struct TextureDescription {
+    Params params;                  ///< of an "imagemap"
+    std::filesystem::path base_dir; ///< file names are relative to it
+};
+
 struct MaterialDescription {
     std::string type = "diffuse";
     Params params;
     std::filesystem::path base_dir; ///< file names are relative to it
     std::string name;               ///< of a named material, else empty
+    /// A diffuse material's reflectance where that is a texture.
+    std::shared_ptr<const TextureDescription> reflectance;
 };
 
 struct LightDescription {
@@ -34,8 +41,10 @@ struct ShapeDescription {
     Params params;
     glm::mat4 to_world{1};
     bool reverse_orientation = false;
-    std::shared_ptr<const MaterialDescription> material; ///< shared by the shapes that wear it
-    std::optional<Params> area_light;                    ///< of `AreaLightSource "diffuse"`
+    /// Shared by the shapes that wear it. Null where the scene states none: parts of a glTF model
+    /// then wear the base colour of their file, everything else pbrt's default, a grey diffuse.
+    std::shared_ptr<const MaterialDescription> material;
+    std::optional<Params> area_light; ///< of `AreaLightSource "diffuse"`
 };
 
 struct SceneDescription {

@@ -3,6 +3,7 @@
 #include "renderer/core/params.h"
 #include "renderer/core/registry.h"
 #include "renderer/scene/mesh.h"
+#include "renderer/scene/picture.h"
 
 #include <filesystem>
 #include <functional>
@@ -17,6 +18,8 @@ class FibreSwatch;
 struct ShapePart {
     TriangleMesh mesh;    ///< in the shape's own space
     std::string material; ///< the name that the shape's file gives it, or empty
+    /// What it wears where the scene states no material.
+    BaseColor base_color{};
     /// What the mesh is only the box of, with a metre to 10⁶ of its units.
     std::shared_ptr<const FibreSwatch> fibres = nullptr;
 };
@@ -28,6 +31,9 @@ struct ShapeContext {
     /// Whether the part with this material name needs UVs, because a cloth lies along them.
     std::function<bool(const std::string& material)> needs_uvs;
     std::vector<std::string>& warnings; ///< what was ignored or mended is appended, a line each
+    /// Under how many pixels the camera sees the segment between two points of the shape's space
+    /// (Camera::seen_length).
+    std::function<double(const glm::dvec3&, const glm::dvec3&)> seen_length;
 };
 
 using ShapeFactory = std::function<std::vector<ShapePart>(const ShapeContext&)>;

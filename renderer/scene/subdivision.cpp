@@ -3,9 +3,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
 #include "renderer/scene/limit_surface.h"
-#include "renderer/scene/mesh_cleaning.h"
 #include "renderer/scene/surface_frames.h"
-#include "renderer/scene/tessellation.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -20,7 +18,8 @@ namespace {
 /// with the square of it, and no garment comes near.
 constexpr uint32_t kMaxValence = 256;
 
-constexpr uint32_t kMaxTriangles = 1u << 30;
+/// About 8 GB of limit points, mesh and BVH.
+constexpr size_t kMaxTriangles = size_t{1} << 26;
 
 constexpr size_t kFacesPerBatch = 64;
 
@@ -63,56 +62,49 @@ size_t separate_mirrored_faces(IndexedMesh& mesh) {
 
 /// The position of a vertex that lies on a cut, a pinned corner or a point of a straight side, with
 /// the same bits in every piece that meets there; nothing where the limit surface decides.
-std::optional<glm::dvec3> position_on_cut(const IndexedMesh& mesh, const ManifoldMesh& cut,
-                                          const Tessellation::Vertex& v, uint32_t level) {
-    const uint32_t weight[3] = {level - v.s - v.t, v.s, v.t}; // barycentric · level
-    const auto corner = [&](int c) {
-        return glm::dvec3(mesh.positions[mesh.position_index[v.triangle][c]]);
-    };
-    for (int c = 0; c < 3; ++c) {
-        const int next = (c + 1) % 3;
-        if (weight[c] == level && cut.pinned[cut.triangles[v.triangle][c]])
-            return corner(c);
-        if (weight[c] + weight[next] == level && weight[c] > 0 && weight[next] > 0 &&
-            cut.straight[v.triangle][c])
-            return (double(weight[c]) * corner(c) + double(weight[next]) * corner(next)) /
-                   double(level);
-    }
-    return std::nullopt;
+std::optional<glm::dvec3> position_on_cut(const ControlMesh& control,
+                                          const Tessellation::Vertex& v) {
+    if (v.side == Tessellation::kInside)
+        return std::nullopt;
+    if (v.step == 0)
+        return control.cut.pinned[control.vertex(v.side)] ? std::optional(control.position(v.side))
+                                                          : std::nullopt;
+    if (!control.cut.straight[v.side / 3][static_cast<int>(v.side % 3)])
+        return std::nullopt;
+    const double step = v.step, rate = v.rate;
+    return ((rate - step) * control.position(v.side) + step * control.position(next_side(v.side))) /
+           rate;
 }
 
-/// Limit points of all vertices. Faces that turn out to have no limit surface are added to `flat`,
-/// and the result is then not valid.
-std::vector<LimitPoint> limit_points(const IndexedMesh& mesh, const ManifoldMesh& cut,
-                                     const Tessellation& tessellation, uint32_t level,
+/// Limit points of all vertices. Triangles of faces that turn out to have no limit surface are
+/// added to `flat`, and the result is then not valid.
+std::vector<LimitPoint> limit_points(const ControlMesh& control, const Tessellation& tessellation,
                                      std::vector<char>& flat) {
     std::vector<LimitPoint> points(tessellation.vertices.size());
     std::unique_ptr<const LimitSurface> surface;
-    if (cut.attached_vertices > 0)
-        surface = std::make_unique<LimitSurface>(cut, flat, mesh);
-    const size_t faces = cut.triangles.size();
+    if (control.cut.attached_vertices > 0)
+        surface = std::make_unique<LimitSurface>(control);
+    const size_t faces = control.faces.size();
     parallel_for((faces + kFacesPerBatch - 1) / kFacesPerBatch, [&](size_t batch) {
-        std::vector<glm::dvec2> parameters;
+        std::vector<glm::vec2> parameters;
         const size_t end = std::min(faces, (batch + 1) * kFacesPerBatch);
-        for (size_t face = batch * kFacesPerBatch; face < end; ++face) {
-            const auto triangle = static_cast<uint32_t>(face);
-            const size_t first = tessellation.first[face];
-            const size_t count = tessellation.first[face + 1] - first;
+        for (size_t number = batch * kFacesPerBatch; number < end; ++number) {
+            const Face& face = control.faces[number];
+            const size_t first = tessellation.first[number];
+            const size_t count = tessellation.first[number + 1] - first;
             parameters.clear();
-            for (size_t i = first; i < first + count; ++i) {
-                const Tessellation::Vertex& v = tessellation.vertices[i];
-                parameters.push_back(glm::dvec2(v.s, v.t) / double(level));
-            }
+            for (size_t i = first; i < first + count; ++i)
+                parameters.push_back(tessellation.vertices[i].parameter);
             const std::span<LimitPoint> out = std::span(points).subspan(first, count);
-            if (flat[face])
+            if (control.detached[face.triangle()])
                 for (size_t i = 0; i < count; ++i)
-                    out[i] = flat_point(mesh, triangle, parameters[i]);
-            else if (!surface->evaluate(triangle, parameters, out))
-                flat[face] = 1;
+                    out[i] = flat_point(control.mesh, face.triangle(), parameters[i]);
+            else if (!surface->evaluate(static_cast<uint32_t>(number), parameters, out))
+                for (uint32_t i = 0; i < face.size; ++i)
+                    flat[face.side[i] / 3] = 1;
             for (size_t i = 0; i < count; ++i)
-                out[i].position =
-                    position_on_cut(mesh, cut, tessellation.vertices[first + i], level)
-                        .value_or(out[i].position);
+                out[i].position = position_on_cut(control, tessellation.vertices[first + i])
+                                      .value_or(out[i].position);
         }
     });
     return points;
@@ -126,10 +118,10 @@ size_t fill_vertices(TriangleMesh& result, const Tessellation& tessellation,
     result.normals.resize(count);
     std::vector<char> has_normal(count, 1);
     for (size_t i = 0; i < count; ++i) {
-        const LimitPoint& p = points[tessellation.vertices[i].twin];
+        const LimitPoint& p = points[tessellation.vertices[i].normal];
         const glm::dvec3 normal = glm::cross(p.position_s, p.position_t);
         const double length = glm::length(normal);
-        result.positions[i] = p.position;
+        result.positions[i] = points[tessellation.vertices[i].place].position;
         has_normal[i] = length > 0 && std::isfinite(length);
         if (has_normal[i])
             result.normals[i] = normal / length;
@@ -139,7 +131,7 @@ size_t fill_vertices(TriangleMesh& result, const Tessellation& tessellation,
         const std::vector<glm::vec3> smooth = smooth_normals(result.positions, result.triangles);
         for (size_t i = 0; i < count; ++i)
             if (!has_normal[i])
-                result.normals[i] = smooth[tessellation.vertices[i].twin];
+                result.normals[i] = smooth[tessellation.vertices[i].normal];
     }
     if (!has_uvs)
         return 0;
@@ -159,21 +151,25 @@ size_t fill_vertices(TriangleMesh& result, const Tessellation& tessellation,
     return repair_frames(result, std::move(sound));
 }
 
+size_t count_creases(const ControlMesh& control) {
+    size_t creases = 0;
+    for_each_edge(control.edges, [&](std::span<const EdgeUse> edge) {
+        creases += control.crease[3 * edge[0].triangle + edge[0].corner];
+    });
+    return creases;
+}
+
 } // namespace
 
-TriangleMesh subdivide(const IndexedMesh& input, int level, bool need_uvs, const std::string& name,
-                       SubdivisionReport* report) {
+EdgeRate uniform_rate(int level) {
+    return [level](const glm::dvec3&, const glm::dvec3&) { return level; };
+}
+
+TriangleMesh subdivide(const IndexedMesh& input, const SubdivisionOptions& options,
+                       const std::string& name, SubdivisionReport* report) {
     const bool has_uvs = !input.uv_index.empty();
-    if (need_uvs && !has_uvs)
+    if (options.need_uvs && !has_uvs)
         throw FileError(name, "", "UVs (TEXCOORD_0) for the cloth", "none");
-    if (level < 1 || level > kMaxLevel)
-        throw FileError(name, "", fmt::format("a subdivision level from 1 to {}", kMaxLevel),
-                        std::to_string(level));
-    if (double(input.position_index.size()) * level * level > kMaxTriangles)
-        throw FileError(
-            name, "",
-            fmt::format("a subdivision level that gives at most {} triangles", kMaxTriangles),
-            std::to_string(level));
     CleaningReport dropped;
     IndexedMesh mesh = clean(input, &dropped);
     SubdivisionReport counts;
@@ -181,19 +177,26 @@ TriangleMesh subdivide(const IndexedMesh& input, int level, bool need_uvs, const
     std::vector<char> flat = faces_at_crowded_vertices(mesh);
     TriangleMesh result;
     for (bool complete = false; !complete;) {
-        const std::vector<char> flat_before = flat;
-        const ManifoldMesh cut = cut_to_manifold(mesh.position_index, flat);
-        Tessellation tessellation = tessellate(cut.triangles, mesh.uv_index, level);
-        const std::vector<LimitPoint> points =
-            limit_points(mesh, cut, tessellation, static_cast<uint32_t>(level), flat);
-        complete = flat == flat_before;
+        const ControlMesh control =
+            make_control_mesh(mesh, flat, {options.crease_angle, options.quads});
+        std::optional<Tessellation> tessellation = tessellate(control, options.rate, kMaxTriangles);
+        if (!tessellation)
+            throw FileError(name, "",
+                            fmt::format("a subdivision into at most {} triangles", kMaxTriangles),
+                            "more");
+        const std::vector<LimitPoint> points = limit_points(control, *tessellation, flat);
+        complete = flat == control.detached;
         if (!complete)
             continue;
-        counts.non_manifold_edges = cut.non_manifold_edges;
-        result.triangles = std::move(tessellation.triangles);
-        counts.frames_repaired = fill_vertices(result, tessellation, points, has_uvs);
+        counts.non_manifold_edges = control.cut.non_manifold_edges;
+        counts.t_junctions = control.t_junctions;
+        counts.creases = count_creases(control);
+        counts.quads = mesh.position_index.size() - control.faces.size();
+        result.triangles = std::move(tessellation->triangles);
+        counts.frames_repaired = fill_vertices(result, *tessellation, points, has_uvs);
     }
-    if (need_uvs && counts.frames_repaired > 0 && counts.frames_repaired == result.positions.size())
+    if (options.need_uvs && counts.frames_repaired > 0 &&
+        counts.frames_repaired == result.positions.size())
         throw FileError(name, "", "UVs (TEXCOORD_0) that cover an area", "none that do");
 
     counts.faces = mesh.position_index.size();

@@ -69,7 +69,9 @@ struct GltfWriter {
     template <class T>
     int add_array(const std::vector<T>& values, int component, const std::string& type,
                   bool normalized = false) {
-        const size_t width = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : 3;
+        const size_t width = type == "SCALAR" ? 1
+                             : type == "MAT4" ? 16
+                                              : static_cast<size_t>(type.back() - '0');
         return add_accessor(add_view(bytes_of(values)), component, values.size() / width, type, 0,
                             normalized);
     }

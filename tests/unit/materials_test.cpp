@@ -61,15 +61,17 @@ glm::vec3 direction(double theta_degrees, double phi_degrees) {
 }
 
 TEST(Materials, AreAllRegistered) {
-    EXPECT_EQ(MaterialRegistry::instance().names(),
-              (std::vector<std::string>{"cloth", "diffuse", "measured"}));
+    EXPECT_EQ(
+        MaterialRegistry::instance().names(),
+        (std::vector<std::string>{"cloth", "conductor", "dielectric", "diffuse", "measured"}));
 }
 
 TEST(Materials, UnknownNameListsTheKnown) {
     const FileError error = error_of("satin", {});
     EXPECT_EQ(error.path, "scene.pbrt");
     EXPECT_EQ(error.place, "7");
-    EXPECT_NE(error.expected.find("cloth, diffuse, measured"), std::string::npos);
+    EXPECT_NE(error.expected.find("cloth, conductor, dielectric, diffuse, measured"),
+              std::string::npos);
     EXPECT_NE(error.found.find("satin"), std::string::npos);
 }
 

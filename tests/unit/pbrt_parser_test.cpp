@@ -141,7 +141,7 @@ struct Refused {
 
 TEST_F(PbrtParser, RefusesWithPlaceAndChoices) {
     const Refused cases[] = {
-        {"WorldBegin\n  Shap \"x\"", "2:3", "Shape, Transform", "Shap"},
+        {"WorldBegin\n  Shap \"x\"", "2:3", "Shape, Texture, Transform", "Shap"},
         {"Camera \"realistic\"\nWorldBegin", "1", "\"perspective\" or \"orthographic\"",
          "realistic"},
         {"Camera \"perspective\" \"float fov\" 180\nWorldBegin", "1:22", "between 0 and 180",
@@ -174,6 +174,9 @@ TEST_F(PbrtParser, RefusesWithPlaceAndChoices) {
         {"WorldBegin\nNamedMaterial \"silk\"", "2:15", "none yet", "silk"},
         {"WorldBegin\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nNamedMaterial \"b\"",
          "3:15", "\"a\"", "b"},
+        {"WorldBegin\nTexture \"a\" \"float\" \"imagemap\"", "2:13", "\"spectrum\"", "float"},
+        {"WorldBegin\nTexture \"a\" \"spectrum\" \"checkerboard\"", "2:24", "\"imagemap\"",
+         "checkerboard"},
         {"WorldBegin\nAreaLightSource \"spot\"", "2:17", "diffuse", "spot"},
         {"WorldBegin\nShape \"gltf\" \"string filename\" [\"a\" 1]", "2:37", "string", "1"},
         {"WorldBegin\nShape \"gltf\" \"float a\" 1 \"float a\" 2", "2:26", "once", "second"},

@@ -156,9 +156,11 @@ TEST(SceneLights, AConstantSkyIsLeftToScattering) {
 }
 
 TEST(Registries, HoldWhatIsShipped) {
-    EXPECT_EQ(LightRegistry::instance().names(), (std::vector<std::string>{"distant", "infinite"}));
-    EXPECT_EQ(ShapeRegistry::instance().names(),
-              (std::vector<std::string>{"fibers", "gltf", "plymesh", "trianglemesh"}));
+    EXPECT_EQ(LightRegistry::instance().names(),
+              (std::vector<std::string>{"distant", "infinite", "point", "spot"}));
+    EXPECT_EQ(
+        ShapeRegistry::instance().names(),
+        (std::vector<std::string>{"disk", "fibers", "gltf", "plymesh", "sphere", "trianglemesh"}));
 }
 
 class SceneBuilder : public testing::Test {
@@ -207,8 +209,8 @@ TEST_F(SceneBuilder, RefusesWithChoices) {
     const auto contains = [](const std::string& text, const std::string& part) {
         EXPECT_NE(text.find(part), std::string::npos) << text;
     };
-    contains(refusal("LightSource \"spot\""), "distant, infinite");
-    contains(refusal("Shape \"sphere\""), "gltf, plymesh, trianglemesh");
+    contains(refusal("LightSource \"goniometric\""), "distant, infinite");
+    contains(refusal("Shape \"cylinder\""), "gltf, plymesh, sphere");
     contains(refusal("Material \"velvet\"\n" + std::string(kTriangle)), "diffuse");
     contains(refusal(std::string(kTriangle) + "\"float radius\" 1"), "indices");
     contains(refusal(std::string(kTriangle) + "\"integer indices\" [0 1 3]"), "from 0 to 2");
@@ -218,6 +220,9 @@ TEST_F(SceneBuilder, RefusesWithChoices) {
     contains(refusal("LightSource \"infinite\" \"rgb L\" [1 1 -1]"), "0 or more");
     contains(refusal("LightSource \"infinite\" \"rgb L\" 1 1 1"), "");
     contains(refusal("LightSource \"distant\" \"point3 from\" [0 0 1]"), "apart");
+    contains(refusal("LightSource \"spot\" \"point3 from\" [0 0 1]"), "apart");
+    contains(refusal("LightSource \"spot\" \"float coneangle\" 0"), "180 degrees");
+    contains(refusal("LightSource \"point\" \"rgb I\" [-1 1 1]"), "0 or more");
     contains(refusal("AreaLightSource \"diffuse\" \"rgb M\" [1 1 1]\n" + std::string(kTriangle)),
              "twosided");
     contains(refusal("Shape \"plymesh\" \"string filename\" \"absent.ply\""), "absent.ply");

@@ -1,0 +1,360 @@
+#include "renderer/scene/subdivision.h"
+
+#include "renderer/scene/auto_uvs.h"
+#include "renderer/scene/camera.h"
+#include "renderer/scene/limit_surface.h"
+#include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/scene_builder.h"
+#include "tests/support/control_meshes.h"
+#include "tests/support/gltf_models.h"
+#include "tests/support/long_run.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+// Faces that are cut as finely as they are seen, creases, and quads.
+
+namespace rapport {
+namespace {
+
+using namespace tests;
+
+/// Any number of pieces from 1 to `most` for an edge, by its place.
+EdgeRate scattered_rate(uint32_t most, uint32_t seed) {
+    return [most, seed](const glm::dvec3& a, const glm::dvec3& b) {
+        const glm::dvec3 p = a + b;
+        std::mt19937 random(
+            seed + static_cast<uint32_t>(std::lround(1e4 * std::abs(p.x + 3 * p.y + 7 * p.z))));
+        return 1 + static_cast<int>(random() % most);
+    };
+}
+
+/// n × n cells, two consecutive triangles each.
+IndexedMesh quad_sheet(uint32_t n, const std::function<float(float, float)>& height) {
+    IndexedMesh mesh = sheet(n, height);
+    mesh.position_index.clear();
+    for (uint32_t j = 0; j < n; ++j)
+        for (uint32_t i = 0; i < n; ++i) {
+            const uint32_t a = j * (n + 1) + i, b = a + 1, c = b + n + 1, d = a + n + 1;
+            mesh.position_index.emplace_back(a, b, c);
+            mesh.position_index.emplace_back(a, c, d);
+        }
+    return mesh;
+}
+
+/// The cube |x|, |y|, |z| ≤ 1, two consecutive triangles to a face.
+IndexedMesh quad_cube() {
+    IndexedMesh mesh;
+    for (int i = 0; i < 8; ++i)
+        mesh.positions.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+    for (const glm::uvec4& q :
+         {glm::uvec4(0, 2, 3, 1), glm::uvec4(4, 5, 7, 6), glm::uvec4(0, 1, 5, 4),
+          glm::uvec4(2, 6, 7, 3), glm::uvec4(0, 4, 6, 2), glm::uvec4(1, 3, 7, 5)}) {
+        mesh.position_index.emplace_back(q.x, q.y, q.z);
+        mesh.position_index.emplace_back(q.x, q.z, q.w);
+    }
+    return mesh;
+}
+
+/// A normal of its own for each triangle.
+void add_face_normals(IndexedMesh& mesh) {
+    mesh.normals.clear();
+    mesh.normal_index.clear();
+    for (const glm::uvec3& t : mesh.position_index) {
+        const auto& p = mesh.positions;
+        mesh.normal_index.emplace_back(static_cast<uint32_t>(mesh.normals.size()));
+        mesh.normals.push_back(glm::normalize(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x])));
+    }
+}
+
+TEST(AdaptiveSubdivision, UnequalNeighboursLeaveNoCracks) {
+    const uint32_t count = long_run() ? 200 : 30;
+    for (uint32_t seed = 0; seed < count; ++seed)
+        for (const bool quads : {false, true})
+            for (const bool seams : {false, true}) {
+                IndexedMesh mesh = quads && !seams ? quad_cube() : icosahedron();
+                if (seams)
+                    add_separate_uvs(mesh);
+                SubdivisionOptions options;
+                options.rate = scattered_rate(9, seed);
+                options.quads = quads;
+                options.need_uvs = seams;
+                const TriangleMesh result = subdivide(mesh, options, "solid");
+                expect_closed_manifold(result);
+                expect_sound(result);
+            }
+}
+
+TEST(AdaptiveSubdivision, CutsAndFlatFacesKeepTheirRates) {
+    // A fin on a sheet: its edge is cut, and both pieces must be cut into the same points.
+    IndexedMesh mesh = sheet(4, [](float x, float y) { return x * y; });
+    const auto tip = static_cast<uint32_t>(mesh.positions.size());
+    mesh.positions.emplace_back(0.25f, 0.5f, 2);
+    mesh.position_index.emplace_back(11, 12, tip);
+    SubdivisionOptions options;
+    options.rate = [](const glm::dvec3& a, const glm::dvec3& b) {
+        return std::abs(a.y - b.y) + std::abs(a.z - b.z) > 0.2 ? 2 : 5;
+    };
+    SubdivisionReport report;
+    const TriangleMesh result = subdivide(mesh, options, "fin", &report);
+    EXPECT_EQ(report.non_manifold_edges, 1u);
+    size_t triple = 0;
+    const std::vector<glm::uvec3> triangles = topology(result);
+    for_each_edge(edge_uses(triangles),
+                  [&](std::span<const EdgeUse> edge) { triple += edge.size() == 3; });
+    EXPECT_EQ(triple, 5u);
+}
+
+TEST(AdaptiveSubdivision, TooManyTrianglesAreRefused) {
+    const FileError error =
+        refusal([] { subdivide(icosahedron(), options(60000, false), "globe"); });
+    EXPECT_TRUE(mentions(error, "globe: expected a subdivision into at most"));
+}
+
+TEST(Creases, AreWhereTheNormalsOfTheFileDiffer) {
+    IndexedMesh mesh = quad_cube();
+    SubdivisionOptions options;
+    options.rate = uniform_rate(3);
+    options.crease_angle = radians(30.0);
+    SubdivisionReport report;
+    subdivide(mesh, options, "cube", &report);
+    EXPECT_EQ(report.creases, 0u); // no normals
+    add_face_normals(mesh);
+    const TriangleMesh sharp = subdivide(mesh, options, "cube", &report);
+    EXPECT_EQ(report.creases, 12u); // but not the diagonals of the faces
+    for (size_t v = 0; v < sharp.positions.size(); ++v) {
+        const glm::vec3 p = sharp.positions[v], n = sharp.normals[v];
+        EXPECT_NEAR(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}), 1, 1e-6);
+        EXPECT_NEAR(glm::dot(p, n), 1,
+                    1e-5); // the cube stays a cube, with the normals of its sides
+    }
+    expect_closed_manifold(sharp);
+    options.crease_angle = radians(91.0);
+    const TriangleMesh round = subdivide(mesh, options, "cube", &report);
+    EXPECT_EQ(report.creases, 0u);
+    EXPECT_LT(glm::length(round.positions[0]), 1);
+}
+
+TEST(Creases, RunOutInASmoothVertex) {
+    // A fold along part of the middle line: there the two sides have normals of their own.
+    IndexedMesh mesh = sheet(6, [](float x, float) { return std::abs(x - 0.5f); });
+    mesh.normal_index = mesh.position_index;
+    for (const glm::vec3& p : mesh.positions)
+        mesh.normals.push_back(p.x < 0.5f ? glm::vec3(1, 0, 1) : glm::vec3(-1, 0, 1));
+    const auto sharp_end = [&](uint32_t v) {
+        return mesh.positions[v].x == 0.5f && mesh.positions[v].y < 0.4f;
+    };
+    for (glm::uvec3& t : mesh.normal_index) // corners on the left of the fold: normals of the left
+        for (int c = 0; c < 3; ++c)
+            if (sharp_end(t[c]) &&
+                (mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]).x < 1.5f)
+                t[c] = 0;
+    SubdivisionOptions options;
+    options.rate = uniform_rate(4);
+    options.crease_angle = radians(30.0);
+    SubdivisionReport report;
+    const TriangleMesh result = subdivide(mesh, options, "fold", &report);
+    EXPECT_EQ(report.creases, 3u); // y = 0, 1/6, 2/6 are split: the third edge ends smoothly
+    expect_sound(result);
+    const auto normals_near = [&](float y) {
+        float spread = 0;
+        for (size_t v = 0; v < result.positions.size(); ++v)
+            if (std::abs(result.positions[v].x - 0.5f) < 1e-3f &&
+                std::abs(result.positions[v].y - y) < 0.05f)
+                spread = std::max(spread, std::abs(result.normals[v].x));
+        return spread;
+    };
+    EXPECT_GT(normals_near(0.15f), 0.5f);
+    EXPECT_LT(normals_near(0.85f), 0.05f);
+}
+
+TEST(Quads, AreRecoveredFromPairsOfTriangles) {
+    SubdivisionOptions options;
+    options.rate = uniform_rate(2);
+    options.quads = true;
+    SubdivisionReport report;
+    const TriangleMesh cube = subdivide(quad_cube(), options, "cube", &report);
+    EXPECT_EQ(report.quads, 6u);
+    EXPECT_EQ(report.faces, 12u);
+    // Halstead, Kass & DeRose 1993: (n² V + 4 Σ edges + Σ faces) / (n (n + 5)), here (9 + 4 −
+    // 1)/24.
+    float corner = 0;
+    for (const glm::vec3& p : cube.positions)
+        corner = std::max(corner, std::min({p.x, p.y, p.z}));
+    EXPECT_NEAR(corner, 0.5f, 1e-6f);
+    expect_closed_manifold(cube);
+    subdivide(icosahedron(), options, "icosahedron", &report);
+    EXPECT_GT(report.quads, 0u); // whatever pairs there are, beside single triangles
+    options.quads = false;
+    subdivide(quad_cube(), options, "cube", &report);
+    EXPECT_EQ(report.quads, 0u);
+}
+
+TEST(Quads, SeamsCreasesAndArrowheadsStayTriangles) {
+    SubdivisionOptions options;
+    options.quads = true;
+    options.crease_angle = radians(30.0);
+    SubdivisionReport report;
+    const auto quads = [&](const IndexedMesh& mesh) {
+        subdivide(mesh, options, "mesh", &report);
+        return report.quads;
+    };
+    IndexedMesh mesh = quad_sheet(1, [](float, float) { return 0.0f; });
+    EXPECT_EQ(quads(mesh), 1u);
+    IndexedMesh seam = mesh;
+    add_separate_uvs(seam);
+    EXPECT_EQ(quads(seam), 0u);
+    IndexedMesh crease = mesh;
+    crease.normals = {{0, 0, 1}, {0, 1, 1}};
+    crease.normal_index = {glm::uvec3(0), glm::uvec3(1)};
+    EXPECT_EQ(quads(crease), 0u);
+    mesh.positions[3] = {0.6f, 0.1f, 0}; // not convex
+    EXPECT_EQ(quads(mesh), 0u);
+}
+
+/// Every vertex of a sheet on which (u, v) = (x, y), but for a jump of u in the middle if `seam`.
+void expect_true_frames(const std::function<float(float, float)>& height, bool seam) {
+    IndexedMesh mesh = quad_sheet(7, height);
+    // A cell of triangles that cannot be joined, so that Catmull & Clark's triangles occur.
+    std::swap(mesh.position_index[20], mesh.position_index[22]);
+    add_uvs(mesh, [](const glm::vec3& p) { return glm::vec2(p); });
+    const auto offset = static_cast<uint32_t>(mesh.uvs.size());
+    for (uint32_t i = 0; i < offset; ++i)
+        mesh.uvs.push_back(mesh.uvs[i] + glm::vec2(3, 0));
+    for (glm::uvec3& t : mesh.uv_index)
+        if (seam && (mesh.uvs[t.x] + mesh.uvs[t.y] + mesh.uvs[t.z]).x > 9 / 7.0f)
+            t += offset;
+    SubdivisionOptions options;
+    options.rate = scattered_rate(5, 1);
+    options.quads = true;
+    options.need_uvs = true;
+    SubdivisionReport report;
+    const TriangleMesh result = subdivide(mesh, options, "sheet", &report);
+    EXPECT_GT(report.quads, 40u);
+    EXPECT_LT(report.quads, 49u);
+    for (size_t v = 0; v < result.positions.size(); ++v) {
+        ASSERT_LT(glm::distance(glm::vec2(result.weft[v]), glm::vec2(1, 0)), 2e-4f);
+        ASSERT_LT(glm::distance(glm::vec2(result.warp[v]), glm::vec2(0, 1)), 2e-4f);
+    }
+}
+
+TEST(Quads, FramesAreTheDerivatives) {
+    expect_true_frames([](float x, float y) { return 0.1f * std::sin(7 * x) * std::cos(5 * y); },
+                       false);
+    // Beyond a seam the UVs go on in the triangle's plane, which is exact for a flat sheet.
+    expect_true_frames([](float, float) { return 0.0f; }, true);
+}
+
+/// Two sheets that touch along x = 1 without being joined; the right one has twice as many vertices
+/// there, and both rise towards it.
+IndexedMesh sheets_with_t_junctions() {
+    IndexedMesh mesh = sheet(2, [](float x, float) { return x * x; });
+    const IndexedMesh fine = sheet(4, [](float x, float) { return (1 - x) * (1 - x); });
+    const auto offset = static_cast<uint32_t>(mesh.positions.size());
+    for (const glm::vec3& p : fine.positions)
+        mesh.positions.push_back(p + glm::vec3(1, 0, 0));
+    for (const glm::uvec3& t : fine.position_index)
+        mesh.position_index.push_back(t + offset);
+    for (glm::vec3& p : mesh.positions) // the line on which they touch bends at its middle vertex
+        p.x += 0.3f * std::abs(p.y - 0.5f);
+    return mesh;
+}
+
+TEST(TJunctions, StayOnTheLineOnWhichPiecesTouch) {
+    const IndexedMesh mesh = sheets_with_t_junctions();
+    SubdivisionOptions options;
+    options.rate = uniform_rate(4);
+    SubdivisionReport report;
+    const TriangleMesh result = subdivide(mesh, options, "sheets", &report);
+    EXPECT_EQ(report.t_junctions, 2u);
+    size_t on_line = 0;
+    for (const glm::vec3& p : result.positions)
+        if (std::abs(p.z - 1) < 1e-5f) {
+            ++on_line;
+            EXPECT_NEAR(p.x, 1 + 0.3f * std::abs(p.y - 0.5f), 1e-6f);
+        }
+    EXPECT_EQ(on_line, 9u + 17u); // 2 edges of 4 pieces on the left, 4 on the right
+    // Pieces that are apart by more than a thousandth of the edge are none.
+    IndexedMesh apart = mesh;
+    for (size_t v = 9; v < apart.positions.size(); ++v)
+        apart.positions[v].x += 1e-2f;
+    subdivide(apart, options, "sheets", &report);
+    EXPECT_EQ(report.t_junctions, 0u);
+}
+
+TEST(AutoUvs, HangTheWarpVertically) {
+    IndexedMesh mesh = icosahedron();
+    add_auto_uvs(mesh);
+    SubdivisionReport report;
+    const TriangleMesh result = subdivide(mesh, options(3, true), "icosahedron", &report);
+    EXPECT_EQ(report.mirrored, 0u);
+    EXPECT_EQ(report.frames_repaired, 0u);
+    expect_closed_manifold(result);
+    expect_sound(result);
+    for (size_t v = 0; v < result.positions.size(); ++v) {
+        const glm::vec3 n = glm::abs(result.normals[v]);
+        const bool on_side = n.y < 0.3f * std::max(n.x, n.z);
+        if (on_side) { // the warp climbs straight up: its part across is that of the surface
+            const glm::vec3 across = glm::cross(result.normals[v], glm::vec3(0, 1, 0));
+            EXPECT_LT(std::abs(glm::dot(glm::normalize(result.warp[v]), glm::normalize(across))),
+                      0.6f);
+            EXPECT_GT(result.warp[v].y, 0.5f);
+        }
+    }
+}
+
+TEST(SeenLength, IsThatOnTheFilmWhereASegmentStandsSquare) {
+    Camera camera;
+    camera.resolution = {400, 200};
+    camera.fov_degrees = 60;
+    camera.to_world = glm::translate(glm::mat4(1), glm::vec3(1, 2, 3));
+    const glm::dvec3 eye(1, 2, 3);
+    const double pixel = 2 * std::tan(radians(30.0)) / 200; // at distance 1
+    EXPECT_NEAR(camera.seen_length(eye + glm::dvec3(0, 0, 5), eye + glm::dvec3(0.5, 0, 5)),
+                0.1 / pixel, 1e-4);
+    EXPECT_NEAR(camera.seen_length(eye + glm::dvec3(0, 0, 5), eye + glm::dvec3(0, 0, 7)),
+                2 / 5.0 / pixel, 1e-3); // at its nearest point
+    EXPECT_EQ(camera.seen_length(eye, eye), 0);
+    EXPECT_TRUE(std::isinf(camera.seen_length(eye, eye + glm::dvec3(1, 0, 0))));
+    camera.to_world = glm::scale(camera.to_world, glm::vec3(7)); // changes nothing but the unit
+    EXPECT_NEAR(camera.seen_length(eye + glm::dvec3(0, 0, 5), eye + glm::dvec3(0.5, 0, 5)),
+                0.1 / pixel, 1e-4);
+    camera.kind = Camera::Kind::orthographic;
+    EXPECT_NEAR(camera.seen_length(eye, eye + glm::dvec3(0, 0, 7)), 100, 1e-4);
+}
+
+TEST(GltfShape, IsCutAsFinelyAsItIsSeen) {
+    const TemporaryFolder folder;
+    write_bytes(folder / "model.glb", quad().glb());
+    const auto triangles = [&](const std::string& camera, const std::string& parameters) {
+        write_bytes(folder / "scene.pbrt",
+                    camera +
+                        " Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 100 "
+                        "WorldBegin Shape \"gltf\" \"string filename\" \"model.glb\" " +
+                        parameters);
+        std::vector<std::string> warnings;
+        return build_scene(parse_pbrt(folder / "scene.pbrt"), {}, warnings)
+            .surfaces()
+            .at(0)
+            .mesh.triangles.size();
+    };
+    const std::string near = "LookAt 0 0 3 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90",
+                      far = "LookAt 0 0 30 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90";
+    EXPECT_EQ(triangles(near, "\"integer level\" 3"), 18u);
+    EXPECT_EQ(triangles(near, "\"integer level\" 0"), 2u);
+    // Seen from 3 m, a metre takes 100/6 pixels: 2 pieces of at most 9, the diagonal 3.
+    const size_t few = triangles(near, "\"float edgelength\" 9");
+    EXPECT_GE(few, 8u);
+    EXPECT_LE(few, 18u);
+    EXPECT_GT(triangles(near, "\"float edgelength\" 1"), 20 * few);
+    EXPECT_EQ(triangles(far, "\"float edgelength\" 9"), 2u);
+    EXPECT_EQ(triangles(far, ""), triangles(far, "\"float edgelength\" 2"));
+    for (const auto& [parameters, expected] :
+         {std::pair{"\"float edgelength\" 0", "above 0"},
+          {"\"float edgelength\" 2 \"integer level\" 2", "either"},
+          {"\"integer level\" 65", "0 to 64"},
+          {"\"float creaseangle\" 200", "0 to 180"}})
+        EXPECT_TRUE(mentions(refusal([&, p = parameters] { triangles(near, p); }), expected));
+}
+
+} // namespace
+} // namespace rapport
