@@ -86,13 +86,15 @@ class Builder {
                 throw FileError(shape.params.path(), shape.params.line(),
                                 "UVs, along which the cloth lies", "a mesh without");
             Surface surface;
-            surface.mesh = std::move(part.mesh);
-            transform(surface.mesh, shape.to_world);
+            transform(part.mesh, shape.to_world);
             if (part.fibres)
                 place_fibres(part.fibres, shape, surface);
             if (shape.reverse_orientation)
-                reverse_orientation(surface.mesh);
+                reverse_orientation(part.mesh);
+            orient_by_normals(part.mesh);
+            surface.mesh = std::make_shared<const TriangleMesh>(std::move(part.mesh));
             surface.material = bsdf(material);
+            surface.description = described(*material, part.material);
             if (shape.area_light)
                 set_emission(*shape.area_light, surface);
             surfaces.push_back(std::move(surface));
@@ -141,6 +143,15 @@ class Builder {
             return named->second;
         const auto found = overrides_.find(shape.material->name);
         return found != overrides_.end() && !found->first.empty() ? found->second : shape.material;
+    }
+
+    static MaterialPointer described(MaterialDescription material, const std::string& part) {
+        if (!part.empty())
+            material.name = part;
+        else if (material.name.empty() && material.type == "cloth")
+            material.name = fmt::format("{} (line {})", material.params.get_string("filename", ""),
+                                        material.params.line());
+        return std::make_shared<const MaterialDescription>(std::move(material));
     }
 
     std::shared_ptr<const Bsdf> bsdf(const MaterialPointer& material) {
