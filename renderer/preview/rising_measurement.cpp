@@ -9,7 +9,7 @@ namespace {
 constexpr double kHastyTurnDegrees = 4;
 constexpr uint64_t kHastyColourPaths = 4096, kHastyPaths = 64;
 
-constexpr uint64_t kPaths = 1024; ///< per direction and round; as many as need no pilot
+constexpr uint64_t kPaths = 256; ///< per direction and round: so few need no pilot
 
 void mix(std::vector<float>& mean, const std::vector<float>& more, double share) {
     for (size_t i = 0; i < mean.size(); ++i)

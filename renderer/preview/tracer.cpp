@@ -9,7 +9,7 @@
 namespace rapport {
 namespace {
 
-constexpr double kFirstSeconds = 0.05; ///< what a view's first picture should take
+constexpr double kFirstSeconds = 0.07; ///< what a view's first picture should take
 constexpr double kPatience = 0.1;      ///< how long it may take when the next view waits [s]
 constexpr double kFirstGuess = 2e5;    ///< paths per second, before any have been traced
 constexpr double kShowEvery = 0.25;    ///< seconds between pictures of the full resolution
@@ -26,7 +26,7 @@ glm::ivec2 scaled(const glm::ivec2& resolution, int scale) {
 
 int first_scale(const glm::ivec2& resolution, double paths_per_second) {
     int scale = 1;
-    for (; scale < kCoarsestScale; scale *= 2) {
+    for (; scale < kCoarsestScale; ++scale) {
         const glm::dvec2 size(scaled(resolution, scale));
         if (size.x * size.y <= kFirstSeconds * paths_per_second)
             break;

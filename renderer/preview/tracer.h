@@ -21,7 +21,7 @@ struct Picture {
     double paths_per_second = 0;
 };
 
-/// Renders in the background at rising quality: first at a resolution that takes a twentieth of a
+/// Renders in the background at rising quality: first at a resolution that takes a fifteenth of a
 /// second, then at doubled ones, and at last sample after sample at the full one, where the picture
 /// of n samples is the one that `render` makes of n. A new view takes the place of the old one at
 /// once, except that a view's first picture is finished even when the next view waits, for a
