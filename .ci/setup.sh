@@ -27,10 +27,17 @@ program=(
   zlib1g-dev              # compression under EXR
   nlohmann-json3-dev      # JSON of `rapport info` and of glTF
   librandom123-dev        # counter-based random numbers
+  libglfw3-dev            # the window of `rapport view`
+  libepoxy-dev            # OpenGL functions
+  libimgui-dev            # what is in the window
+  fonts-dejavu-core       # its letters
 )
 tests=(
   libgtest-dev            # unit and statistical tests
   libbenchmark-dev        # measured speed
+  xvfb                    # a display for the window's tests
+  xauth                   # lets them use it
+  libgl1-mesa-dri         # OpenGL without a graphics card
 )
 long=(
   clang                   # libFuzzer comes with it alone

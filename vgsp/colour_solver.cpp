@@ -3,12 +3,12 @@
 #include "renderer/core/parallel.h"
 #include "vgsp/incident_path.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace rapport {
 namespace {
 
-constexpr size_t kPaths = 1 << 16;
 constexpr size_t kBatchPaths = 1024;
 constexpr double kGreatestAbsorption = 1e4; ///< [1/µm]: ten thousand times what hides a fibre
 
@@ -21,17 +21,20 @@ IncidentDirection diffuse_direction(CounterRng& rng) {
 } // namespace
 
 ColourSolver::ColourSolver(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
-                           int max_events, uint64_t seed) {
+                           const GoniophotometerSettings& settings) {
     std::vector<FibreOptics> undyed(optics.begin(), optics.end());
     for (FibreOptics& kind : undyed)
         kind.absorption_per_um.clear();
     const std::vector<FibreMedium> media = fibre_media(undyed, 0, tracer);
-    const IncidentPathTracer tracing{tracer, media, 0, max_events, false};
-    std::vector<std::vector<WhitePath>> batches(kPaths / kBatchPaths);
+    const IncidentPathTracer tracing{tracer, media, 0, settings.max_events, false};
+    const size_t paths = settings.colour_paths;
+    std::vector<std::vector<WhitePath>> batches((paths + kBatchPaths - 1) / kBatchPaths);
     parallel_for(batches.size(), [&](size_t batch) {
+        throw_if(settings.stopped);
         IncidentPath path;
-        for (size_t k = batch * kBatchPaths; k < (batch + 1) * kBatchPaths; ++k) {
-            CounterRng rng(seed, Purpose::colour_solve, 0, k);
+        const size_t end = std::min(paths, (batch + 1) * kBatchPaths);
+        for (size_t k = batch * kBatchPaths; k < end; ++k) {
+            CounterRng rng(settings.seed, Purpose::colour_solve, 0, k);
             const IncidentDirection incident = diffuse_direction(rng);
             tracing.trace(incident, rng, path);
             if (path.fate != PathFate::scattered)

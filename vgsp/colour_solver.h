@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vgsp/fibre_step.h"
+#include "vgsp/goniophotometer.h"
 
 #include <optional>
 
@@ -17,10 +17,11 @@ namespace rapport {
 class ColourSolver {
   public:
     /// `optics` gives refractive indices and surface absorption; its volume absorption is ignored.
+    /// Of the settings, `colour_paths`, `max_events`, `seed` and `stopped` count here.
     ColourSolver(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
-                 int max_events, uint64_t seed);
+                 const GoniophotometerSettings& settings);
 
-    /// [1] for a volume absorption [1/µm] ≥ 0. Standard error below 0.002.
+    /// [1] for a volume absorption [1/µm] ≥ 0. Standard error 0.5/√colour_paths at most.
     double albedo(double absorption_per_um) const;
     double greatest_albedo() const { return albedo(0); }
     /// What no dye takes away: light reflected before it enters a fibre.

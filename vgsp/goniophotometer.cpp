@@ -154,6 +154,7 @@ void Run::trace(std::span<const Task> tasks, std::vector<PathTally>& tallies) co
         const std::span<const Task> chunk = tasks.first(std::min(tasks.size(), waiting_batches_));
         std::vector<PathBatch> found(chunk.size());
         parallel_for(chunk.size(), [&](size_t i) {
+            throw_if(settings_.stopped);
             found[i] = trace_batch(tracers_, table_, chunk[i].direction, chunk[i].group,
                                    settings_.seed, chunk[i].first, chunk[i].count);
         });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "materials/table/bsdf_table.h"
+#include "renderer/core/stop_signal.h"
 #include "renderer/kernel/fibre_tracer.h"
 #include "vgsp/fibre_step.h"
 
@@ -16,6 +17,9 @@ struct GoniophotometerSettings {
     double max_seconds = 0; ///< for the whole run; 0 = no bound
     int max_events = 4096;  ///< boundary events of a path before it counts as capped
     uint64_t seed = 0;
+    /// By which wanted colours are solved for: the standard error of an albedo is 0.5/√this at most.
+    uint64_t colour_paths = 1 << 16;
+    StopSignal stopped = nullptr; ///< asked before each batch of paths
 };
 
 /// Told after each increment of the run.
@@ -64,7 +68,8 @@ struct Checkpoint {
 /// `table.metadata`, which must tell all that decides the result, and the incident directions:
 /// FileError for one of another run.
 ///
-/// Throws std::invalid_argument for optics or settings outside their domain.
+/// Throws std::invalid_argument for optics or settings outside their domain, and Stopped when told
+/// to stop.
 GoniophotometerCounts
 measure(std::span<const kernel::FibreTracer> realisations, std::span<const FibreOptics> optics,
         const GoniophotometerSettings& settings, BsdfTable& table,

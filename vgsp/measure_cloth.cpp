@@ -42,7 +42,7 @@ class Dyer {
         const size_t group = disperses(undyed_) ? band : 0;
         const ColourSolver& solver = solvers_
                                          .try_emplace(group, tracer_, in_band(undyed_, group),
-                                                      settings_.max_events, settings_.seed)
+                                                      settings_)
                                          .first->second;
         const std::optional<double> absorption = solver.absorption_for(albedo);
         if (!absorption)
@@ -76,6 +76,7 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
         {"accuracy_asked", fmt::format("{}", settings.accuracy)},
         {"max_paths", fmt::format("{}", settings.max_paths)},
         {"max_events", fmt::format("{}", settings.max_events)},
+        {"colour_paths", fmt::format("{}", settings.colour_paths)},
         {"realisations", fmt::format("{}", realisations)},
         {"max_turn_degrees", fmt::format("{}", geometry.max_turn_degrees)},
         {"dither", geometry.dither ? "yes" : "no"},
@@ -137,7 +138,7 @@ measure_cloth(const Cloth& cloth, const MeasureOptions& options,
     if (options.realisations < 1)
         throw std::invalid_argument("no realisation of the cloth");
     const GoniophotometerSettings& settings = options.goniophotometer;
-    const MicroElementOptions geometry{.seed = settings.seed};
+    const MicroElementOptions geometry{.seed = settings.seed, .stopped = settings.stopped};
     ClothMeasurement result{options.incidence.empty()
                                 ? make_full_table(cloth.bands, options.front, options.back)
                                 : make_partial_table(cloth.bands, options.incidence),

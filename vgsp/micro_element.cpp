@@ -191,6 +191,7 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
                    "at least ", element, cloth, ends, picks);
     std::vector<WoundYarn> yarns(ends + picks);
     parallel_for(yarns.size(), [&](size_t k) {
+        throw_if(options.stopped);
         yarns[k] = k < ends ? wind_yarn(warp, {0, 1, 0}, k, k, options)
                             : wind_yarn(weft, {1, 0, 0}, k - ends, k, options);
     });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/core/stop_signal.h"
 #include "renderer/kernel/fibres.h"
 #include "vgsp/cloth.h"
 
@@ -38,10 +39,12 @@ struct MicroElementOptions {
     /// Repeats of the draft along both yarns that the cell has at least: the paper's extended
     /// micro-element. The longer the cell, the less twist is rounded to close.
     int least_repeats = 1;
+    StopSignal stopped{}; ///< asked before each yarn is wound
 };
 
 /// Builds the micro-element (the paper, section 3). FileError (at the cloth's path) where the
-/// cloth cannot exist: yarns too thick for the sett, fibres that do not fit their yarn.
+/// cloth cannot exist: yarns too thick for the sett, fibres that do not fit their yarn. Throws Stopped
+/// when told to stop.
 MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& options = {});
 
 } // namespace rapport

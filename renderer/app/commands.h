@@ -18,6 +18,7 @@ struct CommonOptions {
 // Each adds one subcommand, whose callback does the work; a check that fails sets `status` to 1.
 void add_vgsp_command(CLI::App& app, const CommonOptions& common);
 void add_render_command(CLI::App& app, const CommonOptions& common);
+void add_view_command(CLI::App& app, const CommonOptions& common);
 void add_diff_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app);
 void add_export_command(CLI::App& app);

@@ -63,6 +63,7 @@ int run_program(int argc, char** argv) {
 
     add_vgsp_command(app, common);
     add_render_command(app, common);
+    add_view_command(app, common);
     add_diff_command(app, status);
     add_info_command(app);
     add_export_command(app);

@@ -1,11 +1,9 @@
-#include "renderer/app/commands.h"
-#include "renderer/core/error.h"
+#include "renderer/app/scene_options.h"
 #include "renderer/core/progress.h"
 #include "renderer/integrator/path_tracer.h"
 #include "renderer/integrator/streaks.h"
-#include "renderer/scene/model_scene.h"
-#include "renderer/scene/pbrt_parser.h"
 #include "renderer/scene/scene_builder.h"
+#include "renderer/scene/scene_file.h"
 #include "renderer/scene/table_loader.h"
 
 #include <chrono>
@@ -18,52 +16,18 @@
 namespace rapport {
 namespace {
 
-struct RenderOptions {
-    std::string scene, size;
-    std::vector<std::string> cloths, colourways, outputs;
+struct RenderOptions : SceneOptions {
+    std::vector<std::string> outputs;
     int samples = 0;  ///< 0 = as the scene says
     double error = 0; ///< 0 = none is asked for
     std::string aov;  ///< drawn instead of the picture
     double accuracy = 0.2;
 };
 
-glm::ivec2 parse_size(const std::string& text) {
-    constexpr int kLargest = 32768;
-    int width = 0, height = 0, used = 0;
-    if (std::sscanf(text.c_str(), "%6dx%6d%n", &width, &height, &used) != 2 ||
-        used != static_cast<int>(text.size()) || width < 1 || height < 1 || width > kLargest ||
-        height > kLargest)
-        throw FileError("command line", "--size",
-                        fmt::format("WIDTHxHEIGHT, each 1 to {}", kLargest), text);
-    return {width, height};
-}
-
-/// "CHOICE" or "MATERIAL=CHOICE", by material.
-template <class Choice>
-std::map<std::string, Choice> parse_choices(const std::vector<std::string>& texts,
-                                            const char* option, const char* expected) {
-    std::map<std::string, Choice> choices;
-    for (const std::string& text : texts) {
-        const size_t equals = text.find('=');
-        const std::string material = equals == std::string::npos ? "" : text.substr(0, equals);
-        const std::string choice = equals == std::string::npos ? text : text.substr(equals + 1);
-        if (choice.empty() || !choices.emplace(material, choice).second)
-            throw FileError("command line", option, expected, text);
-    }
-    return choices;
-}
-
 SceneDescription describe(const RenderOptions& options, const CommonOptions& common) {
     constexpr glm::ivec2 kModelSize{1024, 1024};
-    const std::string extension = lower_extension(options.scene);
-    const bool model = extension == ".gltf" || extension == ".glb";
-    if (!model && extension != ".pbrt")
-        throw FileError(options.scene, "", "a scene (.pbrt) or model (.gltf, .glb)",
-                        "another ending");
-    SceneDescription description =
-        model ? describe_model(options.scene, kModelSize) : parse_pbrt(options.scene);
-    if (!options.size.empty())
-        description.camera.resolution = parse_size(options.size);
+    SceneDescription description = read_scene(options.scene, options.resolution(kModelSize));
+    description.camera.resolution = options.resolution(description.camera.resolution);
     if (options.samples > 0)
         description.settings.samples = options.samples;
     description.settings.error = options.error;
@@ -99,13 +63,11 @@ Scene load(const RenderOptions& options, const CommonOptions& common,
                            line->update(fraction, fmt::format("accuracy {:.4f}", accuracy));
                        });
     std::vector<std::string> warnings;
-    BuildOptions build{parse_choices<std::filesystem::path>(options.cloths, "--cloth",
-                                                            "one cloth file per material"),
+    BuildOptions build{options.cloth_of_material(),
                        [&](const std::filesystem::path& path, const std::string& colourway) {
                            return tables.load(path, colourway);
                        },
-                       parse_choices<std::string>(options.colourways, "--colourway",
-                                                  "one colourway per material")};
+                       options.colourway_of_material()};
     Scene scene = build_scene(description, build, warnings);
     line.reset();
     if (common.quiet)
@@ -179,15 +141,9 @@ void run(const RenderOptions& options, const CommonOptions& common) {
 void add_render_command(CLI::App& app, const CommonOptions& common) {
     const auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a scene, or a model in a cloth");
-    command->add_option("scene", options->scene, "Scene .pbrt, or model .gltf or .glb")->required();
+    options->add_to(*command);
     command->add_option("-o,--output", options->outputs,
                         "Image to write, .exr or .png (repeatable; default: as the scene says)");
-    command->add_option("--cloth", options->cloths,
-                        "Cloth (.bsdf, .toml or .wif) for every glTF material, or as "
-                        "MATERIAL=CLOTH for one (repeatable)");
-    command->add_option("--colourway", options->colourways,
-                        "Colourway of the cloth given for every glTF material, or as "
-                        "MATERIAL=COLOURWAY for one (repeatable)");
     CLI::Option* const samples = command->add_option("--spp", options->samples, "Samples per pixel")
                                      ->check(CLI::Range(1, 1 << 24));
     command
@@ -199,7 +155,6 @@ void add_render_command(CLI::App& app, const CommonOptions& common) {
         ->add_option("--aov", options->aov,
                      "Draws something else instead: warp, streaks along the warp threads")
         ->check(CLI::IsMember({"warp"}));
-    command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels");
     command
         ->add_option("--accuracy", options->accuracy,
                      "Accuracy of a cloth that is measured on the way (default 0.2)")

@@ -1,5 +1,6 @@
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/image.h"
+#include "renderer/core/png.h"
 #include "renderer/core/srgb.h"
 
 #include <array>
@@ -9,6 +10,20 @@
 #include <stdexcept>
 
 namespace rapport {
+
+void write_png_bytes(std::span<const uint8_t> bytes, int width, int height, int channels,
+                     const std::filesystem::path& path) {
+    if (bytes.size() != static_cast<size_t>(width) * height * channels)
+        throw std::invalid_argument("a PNG needs all of its pixels");
+    write_stream_atomically(path, [&](std::ofstream& stream) {
+        const auto append = [](void* to, void* data, int size) {
+            static_cast<std::ofstream*>(to)->write(static_cast<const char*>(data), size);
+        };
+        if (!stbi_write_png_to_func(append, &stream, width, height, channels, bytes.data(),
+                                    channels * width))
+            throw std::bad_alloc(); // the only way in which stb fails here
+    });
+}
 
 void write_png(const Image& image, const std::filesystem::path& path) {
     const std::array planes{image.find("R"), image.find("G"), image.find("B")};
@@ -23,14 +38,7 @@ void write_png(const Image& image, const std::filesystem::path& path) {
             const float clipped = value > 0 ? std::min(value, 1.0f) : 0.0f; // NaN is black
             bytes[3 * i + c] = static_cast<uint8_t>(255 * encode_srgb(clipped) + 0.5f);
         }
-    write_stream_atomically(path, [&](std::ofstream& stream) {
-        const auto append = [](void* to, void* data, int size) {
-            static_cast<std::ofstream*>(to)->write(static_cast<const char*>(data), size);
-        };
-        if (!stbi_write_png_to_func(append, &stream, image.width, image.height, 3, bytes.data(),
-                                    3 * image.width))
-            throw std::bad_alloc(); // the only way in which stb fails here
-    });
+    write_png_bytes(bytes, image.width, image.height, 3, path);
 }
 
 } // namespace rapport

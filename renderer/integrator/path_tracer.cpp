@@ -17,9 +17,10 @@ constexpr int kPilot = 16; ///< samples of every pixel before the first plan
 
 bool finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); }
 
-FilmSample take_sample(const Scene& scene, const CameraRays& rays, int x, int y, int number) {
+FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, int x, int y,
+                       int number) {
     const RenderSettings& settings = scene.settings;
-    const uint64_t pixel = static_cast<uint64_t>(y) * scene.camera.resolution.x + x;
+    const uint64_t pixel = static_cast<uint64_t>(y) * width + x;
     Sampler sampler(settings.sampler, settings.seed, pixel, static_cast<uint32_t>(number));
     // Uniform over the box filter, so that every sample has weight 1.
     const glm::vec2 offset = (2.0f * sampler.next_2d() - 1.0f) * settings.filter_radius;
@@ -73,14 +74,10 @@ class Rendering {
             Film::Tile& tile = film.tiles()[open[number]];
             if (tile.samples > 0 && stopped())
                 return;
-            const int end = std::min(plan[open[number]], samples), start = tile.samples;
-            for (int y = tile.first.y; y < tile.end.y; ++y)
-                for (int x = tile.first.x; x < tile.end.x; ++x)
-                    for (int sample = start; sample < end; ++sample)
-                        film.add(x, y, take_sample(scene_, rays_, x, y, sample));
-            tile.samples = end;
+            const int start = tile.samples;
+            sample_tile(scene_, rays_, film, tile, std::min(plan[open[number]], samples));
             const std::scoped_lock lock(mutex_);
-            taken_ += (end - start) * pixels(tile);
+            taken_ += (tile.samples - start) * pixels(tile);
             if (watcher_.progress)
                 watcher_.progress(
                     taken_ / planned_,
@@ -96,6 +93,15 @@ class Rendering {
 };
 
 } // namespace
+
+void sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::Tile& tile,
+                 int until) {
+    for (int y = tile.first.y; y < tile.end.y; ++y)
+        for (int x = tile.first.x; x < tile.end.x; ++x)
+            for (int sample = tile.samples; sample < until; ++sample)
+                film.add(x, y, take_sample(scene, rays, film.resolution().x, x, y, sample));
+    tile.samples = until;
+}
 
 Film render(const Scene& scene, const RenderWatcher& watcher) {
     Rendering rendering(scene, watcher);

@@ -24,21 +24,34 @@ Scene::Scene(std::vector<Surface> surfaces, std::vector<std::shared_ptr<Light>> 
              Camera camera, RenderSettings settings)
     : camera(std::move(camera)), settings(std::move(settings)), surfaces_(std::move(surfaces)),
       lights_(std::move(lights)) {
-    for (Surface& surface : surfaces_) {
-        orient_by_normals(surface.mesh);
-        kernel_.add_triangles(surface.mesh.positions, surface.mesh.triangles);
-        if (surface.emission != Rgb(0))
-            surface.area_light = std::make_shared<const AreaLight>(surface.mesh, surface.emission,
-                                                                   surface.two_sided_emission);
-    }
-    kernel_.commit();
-
-    const auto [low, high] = kernel_.bounds();
+    kernel::Scene kernel;
+    for (const Surface& surface : surfaces_)
+        kernel.add_triangles(surface.mesh->positions, surface.mesh->triangles);
+    kernel.commit();
+    const auto [low, high] = kernel.bounds();
+    kernel_ = std::make_shared<const kernel::Scene>(std::move(kernel));
     const bool empty = !(low.x <= high.x);
     for (const auto& light : lights_)
         light->prepare(empty ? glm::vec3(0) : 0.5f * (low + high),
                        empty ? 1.0f : std::max(0.5f * glm::length(high - low), 1e-6f));
+    light_up();
+}
 
+Scene::Scene(const Scene& scene, std::vector<Surface> surfaces,
+             std::vector<std::shared_ptr<Light>> lights)
+    : camera(scene.camera), settings(scene.settings), surfaces_(std::move(surfaces)),
+      lights_(std::move(lights)), kernel_(scene.kernel_) {
+    light_up();
+}
+
+/// Makes the surfaces shine that do, and works out how lights are chosen.
+void Scene::light_up() {
+    for (Surface& surface : surfaces_)
+        surface.area_light =
+            surface.emission == Rgb(0)
+                ? nullptr
+                : std::make_shared<const AreaLight>(*surface.mesh, surface.emission,
+                                                    surface.two_sided_emission);
     std::vector<const Light*> all;
     for (const auto& light : lights_)
         all.push_back(light.get());
@@ -65,7 +78,7 @@ Scene::Scene(std::vector<Surface> surfaces, std::vector<std::shared_ptr<Light>> 
 }
 
 Frame Scene::shading_frame(const Surface& surface, const kernel::Hit& hit) const {
-    const TriangleMesh& mesh = surface.mesh;
+    const TriangleMesh& mesh = *surface.mesh;
     const glm::uvec3 t = mesh.triangles[hit.primitive];
     glm::vec3 z = hit.geometric_normal;
     if (!mesh.normals.empty()) {
@@ -92,11 +105,11 @@ Frame Scene::shading_frame(const Surface& surface, const kernel::Hit& hit) const
 }
 
 std::optional<SurfacePoint> Scene::intersect(const kernel::Ray& ray) const {
-    const std::optional<kernel::Hit> hit = kernel_.intersect(ray);
+    const std::optional<kernel::Hit> hit = kernel_->intersect(ray);
     if (!hit)
         return std::nullopt;
     const Surface& surface = surfaces_[hit->geometry];
-    const TriangleMesh& mesh = surface.mesh;
+    const TriangleMesh& mesh = *surface.mesh;
     const glm::uvec3 t = mesh.triangles[hit->primitive];
     const glm::vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
     SurfacePoint point;

@@ -9,6 +9,7 @@
 #include "renderer/scene/picture.h"
 #include "renderer/scene/placed_fibres.h"
 #include "renderer/scene/render_settings.h"
+#include "renderer/scene/scene_description.h"
 
 #include <memory>
 #include <optional>
@@ -19,8 +20,11 @@ namespace rapport {
 
 /// One mesh with its material and, if it shines, its emission.
 struct Surface {
-    TriangleMesh mesh;
+    std::shared_ptr<const TriangleMesh> mesh; ///< its triangles and normals agree on the face side
     std::shared_ptr<const Bsdf> material;
+    /// What the material was made from, under the name that the surface's own file gives it; for
+    /// those who dress the surface anew. May be absent.
+    std::shared_ptr<const MaterialDescription> description;
     std::shared_ptr<const PictureTexture> reflectance; ///< multiplies what is scattered, if any
     Rgb emission{0};                                   ///< radiance of the face side
     bool two_sided_emission = false;                   ///< of the other side too
@@ -51,6 +55,10 @@ class Scene {
   public:
     Scene(std::vector<Surface> surfaces, std::vector<std::shared_ptr<Light>> lights, Camera camera,
           RenderSettings settings);
+    /// The same meshes in other materials and emissions and under other lights, which have been
+    /// prepared; nothing is built anew that depends on the meshes alone.
+    Scene(const Scene& scene, std::vector<Surface> surfaces,
+          std::vector<std::shared_ptr<Light>> lights);
 
     std::optional<SurfacePoint> intersect(const kernel::Ray& ray) const;
     /// Share of light that passes from `from` along unit `direction` up to `distance`: 0 where
@@ -61,6 +69,8 @@ class Scene {
     static constexpr int kMaxLayers = 1000;
 
     const std::vector<Surface>& surfaces() const { return surfaces_; }
+    /// The lights that are no surface.
+    const std::vector<std::shared_ptr<Light>>& lights() const { return lights_; }
 
     /// Picks a light, half of the times by power and half uniformly: a sky over a wide scene has so
     /// much power that the lamp beside a garment would hardly ever be chosen by it. `probability`
@@ -78,6 +88,7 @@ class Scene {
     RenderSettings settings;
 
   private:
+    void light_up();
     Frame shading_frame(const Surface& surface, const kernel::Hit& hit) const;
 
     std::vector<Surface> surfaces_;
@@ -85,7 +96,7 @@ class Scene {
     std::vector<LightChoice> choices_;           ///< all lights of positive power
     std::vector<LightChoice> distant_lights_;
     std::unordered_map<const Light*, float> probability_;
-    kernel::Scene kernel_;
+    std::shared_ptr<const kernel::Scene> kernel_;
 };
 
 /// An origin just off the surface, on the side of `direction`, such that the ray cannot meet the

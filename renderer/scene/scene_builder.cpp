@@ -101,15 +101,18 @@ class Builder {
                 part.base_color.picture = nullptr;
             }
             Surface surface;
-            surface.material = material ? bsdf(material) : bsdf(part.base_color);
-            surface.reflectance =
-                material ? texture(material->reflectance) : texture(part.base_color);
-            surface.mesh = std::move(part.mesh);
-            transform(surface.mesh, shape.to_world);
+            transform(part.mesh, shape.to_world);
             if (part.fibres)
                 place_fibres(part.fibres, shape, surface);
             if (shape.reverse_orientation)
-                reverse_orientation(surface.mesh);
+                reverse_orientation(part.mesh);
+            orient_by_normals(part.mesh);
+            surface.material = material ? bsdf(material) : bsdf(part.base_color);
+            surface.reflectance =
+                material ? texture(material->reflectance) : texture(part.base_color);
+            surface.description =
+                described(material ? *material : MaterialDescription{}, part.material);
+            surface.mesh = std::make_shared<const TriangleMesh>(std::move(part.mesh));
             if (shape.area_light)
                 set_emission(*shape.area_light, surface);
             surfaces.push_back(std::move(surface));
@@ -190,6 +193,15 @@ class Builder {
         if (!picture)
             picture = std::make_shared<Picture>(color.picture->bytes, color.picture->name);
         return std::make_shared<PictureTexture>(picture, color.mapping, color.factor);
+    }
+
+    static MaterialPointer described(MaterialDescription material, const std::string& part) {
+        if (!part.empty())
+            material.name = part;
+        else if (material.name.empty() && material.type == "cloth")
+            material.name = fmt::format("{} (line {})", material.params.get_string("filename", ""),
+                                        material.params.line());
+        return std::make_shared<const MaterialDescription>(std::move(material));
     }
 
     std::shared_ptr<const Bsdf> bsdf(const MaterialPointer& material) {

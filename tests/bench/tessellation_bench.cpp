@@ -65,7 +65,7 @@ Measured picture(const std::filesystem::path& model, const std::string& paramete
     result.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (const Surface& surface : built.surfaces()) // the lamp has two
-        result.triangles += surface.mesh.triangles.size();
+        result.triangles += surface.mesh->triangles.size();
     result.image = render(built).image();
     return result;
 }

@@ -49,7 +49,7 @@ double irradiance_below(double half, double height) {
 Surfaces floor_under_lamp(float height) {
     Surfaces surfaces{tests::surface(level_square(5, 0), tests::diffuse(0.5f)),
                       tests::surface(level_square(1, height), tests::diffuse(0), 2)};
-    reverse_orientation(surfaces[1].mesh); // shines down
+    tests::turn_over(surfaces[1]); // shines down
     return surfaces;
 }
 
@@ -75,7 +75,7 @@ TEST(ClosedScene, LampOverAPlane) {
 
 TEST(ClosedScene, ALampShinesFromItsFaceOnly) {
     Surfaces surfaces = floor_under_lamp(1);
-    reverse_orientation(surfaces[1].mesh);
+    tests::turn_over(surfaces[1]);
     EXPECT_EQ(mean(picture(surfaces, {}, settings(16, 1))), 0);
     surfaces[1].two_sided_emission = true;
     EXPECT_GT(mean(picture(surfaces, {}, settings(16, 1))), 0.1);
@@ -187,7 +187,8 @@ Image simple_picture(const Scene& scene, int samples, bool counted_twice) {
 /// Satin that scatters both ways and lets light pass, between a lamp, the sky, and a floor.
 Scene mixed_scene(Sampler::Kind sampler, uint64_t seed, int samples) {
     Surfaces surfaces = floor_under_lamp(1.5f);
-    surfaces[1].mesh = tests::parallelogram({-2, -2, 2}, {0, 4, 0}, {4, 0, 1});
+    surfaces[1].mesh = std::make_shared<const TriangleMesh>(
+        tests::parallelogram({-2, -2, 2}, {0, 4, 0}, {4, 0, 1}));
     TriangleMesh sheet = tests::parallelogram({-1.5f, -1.5f, 0.5f}, {3, 0, 0.4f}, {0, 3, 0.2f});
     static const auto satin = tests::cloth(tests::satin_intensity, 0.25);
     surfaces.push_back(tests::surface(std::move(sheet), satin));

@@ -11,22 +11,27 @@
 namespace rapport::tests {
 
 ProgramRun run_program(const std::vector<std::string>& arguments, const std::string& folder) {
+    return run_executable(RAPPORT_PROGRAM, arguments, folder);
+}
+
+ProgramRun run_executable(const std::string& program, const std::vector<std::string>& arguments,
+                          const std::string& folder) {
     const TemporaryFolder streams;
     const std::string out = (streams / "out").string(), err = (streams / "err").string();
-    std::vector<char*> argv{const_cast<char*>(RAPPORT_PROGRAM)};
+    std::vector<char*> argv{const_cast<char*>(program.c_str())};
     for (const std::string& argument : arguments)
         argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
 
     const pid_t child = fork();
     if (child < 0)
-        throw std::runtime_error("cannot start " RAPPORT_PROGRAM);
+        throw std::runtime_error("cannot start " + program);
     if (child == 0) {
         const int flags = O_WRONLY | O_CREAT | O_TRUNC;
         if (dup2(open(out.c_str(), flags, 0600), STDOUT_FILENO) < 0 ||
             dup2(open(err.c_str(), flags, 0600), STDERR_FILENO) < 0 || chdir(folder.c_str()) != 0)
             _exit(126);
-        execv(argv[0], argv.data());
+        execvp(argv[0], argv.data());
         _exit(127);
     }
     int status = 0;

@@ -13,4 +13,8 @@ struct ProgramRun {
 /// Runs the `rapport` program in `folder` with these arguments.
 ProgramRun run_program(const std::vector<std::string>& arguments, const std::string& folder = ".");
 
+/// The same for another program, looked for in PATH unless it is named with its folder.
+ProgramRun run_executable(const std::string& program, const std::vector<std::string>& arguments,
+                          const std::string& folder = ".");
+
 } // namespace rapport::tests

@@ -77,11 +77,19 @@ inline TriangleMesh cube(float half) { return box(glm::vec3(-half), glm::vec3(ha
 
 inline Surface surface(TriangleMesh mesh, std::shared_ptr<const Bsdf> material,
                        float emission = 0) {
+    orient_by_normals(mesh);
     Surface made;
-    made.mesh = std::move(mesh);
+    made.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
     made.material = std::move(material);
     made.emission = Rgb(emission);
     return made;
+}
+
+/// The other side becomes the face.
+inline void turn_over(Surface& surface) {
+    TriangleMesh mesh = *surface.mesh;
+    reverse_orientation(mesh);
+    surface.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
 /// Parallel rays from `eye` towards `target`, over a square window of half width `half`.

@@ -50,7 +50,7 @@ class Command : public testing::Test {
 };
 
 TEST_F(Command, RefusesAWrongCommandLine) {
-    expect_refused({}, {"vgsp, render, diff, info, export"});
+    expect_refused({}, {"vgsp, render, view, diff, info, export"});
     expect_refused({"weave"}, {"found weave"});
     expect_refused({"vgsp"}, {"cloth"});
     expect_refused({"vgsp", "a.toml", "--accuracy", "0"}, {"--accuracy"});

@@ -160,7 +160,7 @@ TEST(Goniophotometer, RefusesWhatHasNoMeaning) {
 TEST(ColourSolver, ADyeGivesTheColourItWasSolvedFor) {
     const FibreTracer tracer(tests::reference_stack());
     const std::vector<FibreOptics> clear{{1.53, {0, 0, 0}, 0}};
-    const ColourSolver solver(tracer, clear, 4096, 0);
+    const ColourSolver solver(tracer, clear, {});
     EXPECT_EQ(solver.greatest_albedo(), 1);
     EXPECT_EQ(solver.absorption_for(1), 0);
     EXPECT_FALSE(solver.absorption_for(1.01));
@@ -175,7 +175,7 @@ TEST(ColourSolver, ADyeGivesTheColourItWasSolvedFor) {
     }
     // Surface absorption keeps white out of reach, and is part of the albedo.
     const std::vector<FibreOptics> dull{{1.53, {0, 0, 0}, 0.02}};
-    const ColourSolver dull_solver(tracer, dull, 4096, 0);
+    const ColourSolver dull_solver(tracer, dull, {});
     EXPECT_LT(dull_solver.greatest_albedo(), 0.9);
     EXPECT_FALSE(dull_solver.absorption_for(0.95));
 }
@@ -200,11 +200,20 @@ Cloth thin_cloth() {
     return cloth;
 }
 
+/// One direction of light.
+MeasureOptions coarse_options() {
+    MeasureOptions options;
+    options.goniophotometer.accuracy = 1;
+    options.incidence = {{Side::front, 0.5, 0}};
+    return options;
+}
+
 TEST(MeasureCloth, WritesWhatDecidesTheResult) {
     Cloth cloth = thin_cloth();
     cloth.warp.fibre.color = {0.8, 0.4, 0.2};
     cloth.weft.fibre.absorption_per_um = {0.001, 0.25, 0};
-    const MeasureOptions options{{.accuracy = 1, .seed = 3}, {{Side::front, 0.5, 0}}};
+    MeasureOptions options = coarse_options();
+    options.goniophotometer.seed = 3;
     const ClothMeasurement measured = measure_cloth(cloth, options);
     const auto& metadata = measured.table.metadata;
     EXPECT_TRUE(measured.table.partial());
@@ -226,7 +235,7 @@ TEST(MeasureCloth, AColourwaysColoursAreSolvedAsItsOwn) {
     cloth.colourways["pale"]["warp"].color = {0.8, 0.8, 0.7};
     cloth.colourways["pale"]["weft"].absorption_per_um = {0.001, 0, 0};
     cloth.colourways["same"];
-    const MeasureOptions options{{.accuracy = 1}, {{Side::front, 0.5, 0}}};
+    const MeasureOptions options = coarse_options();
     const BsdfTable table = measure_cloth(cloth, options).table;
     const auto& metadata = table.metadata;
     EXPECT_EQ(metadata.at("colourway.same.warp_absorption_per_um"),
@@ -249,7 +258,7 @@ TEST(MeasureCloth, NamesAColourThatCannotBeReached) {
     Cloth cloth = thin_cloth();
     cloth.weft.fibre.color = {0.5, 0.5, 0.0001};
     try {
-        measure_cloth(cloth, {{.accuracy = 1}, {{Side::front, 0.5, 0}}});
+        measure_cloth(cloth, coarse_options());
         FAIL() << "a black that no dye gives was accepted";
     } catch (const FileError& error) {
         EXPECT_EQ(error.path, "thin.toml");

@@ -266,7 +266,7 @@ TEST(ModelScene, FramesTheWholeModel) {
     const float t = std::tan(radians(scene.camera.fov_degrees) / 2);
     float fill = 0;
     for (const Surface& surface : scene.surfaces())
-        for (const glm::vec3& p : surface.mesh.positions) {
+        for (const glm::vec3& p : surface.mesh->positions) {
             const glm::vec3 c(to_camera * glm::vec4(p, 1));
             if (surface.emission != Rgb(0)) { // the lamp stays out of the picture
                 ASSERT_LT(c.z, 0);

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "renderer/scene/light.h"
+
+namespace rapport {
+
+/// Another light without a place, which is prepared, dimmed by `scale` and turned by a rotation.
+class AdjustedLight final : public Light {
+  public:
+    AdjustedLight(std::shared_ptr<const Light> light, float scale, const glm::mat3& rotation)
+        : light_(std::move(light)), scale_(scale), rotation_(rotation),
+          inverse_(glm::transpose(rotation)) {}
+
+    std::optional<LightSample> sample(const glm::vec3& from, const glm::vec2& u) const override {
+        std::optional<LightSample> sample = light_->sample(from, u);
+        if (sample) {
+            sample->direction = rotation_ * sample->direction;
+            sample->radiance *= scale_;
+        }
+        return sample;
+    }
+    Rgb escaped(const glm::vec3& direction) const override {
+        return scale_ * light_->escaped(inverse_ * direction);
+    }
+    float escaped_pdf(const glm::vec3& direction) const override {
+        return light_->escaped_pdf(inverse_ * direction);
+    }
+    bool is_delta() const override { return light_->is_delta(); }
+    float power() const override { return scale_ * light_->power(); }
+
+  private:
+    std::shared_ptr<const Light> light_;
+    float scale_;
+    glm::mat3 rotation_, inverse_;
+};
+
+} // namespace rapport

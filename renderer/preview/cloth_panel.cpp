@@ -1,0 +1,115 @@
+#include "renderer/preview/cloth_panel.h"
+
+#include "renderer/preview/cloth_controls.h"
+#include "renderer/preview/hemisphere.h"
+
+#include <algorithm>
+#include <cstring>
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace rapport {
+namespace {
+
+constexpr int kMapSize = 128, kCurvePoints = 181;
+const ImVec4 kRed{1.0f, 0.45f, 0.4f, 1};
+
+void draw_curve(const char* label, const std::vector<float>& curve) {
+    ImGui::PushID(label);
+    ImGui::PlotLines("", curve.data(), static_cast<int>(curve.size()), 0, label, 0,
+                     *std::ranges::max_element(curve), {0, 4.6f * ImGui::GetFontSize()});
+    ImGui::PopID();
+}
+
+} // namespace
+
+void ClothPanel::draw_light(const ClothTable& table) {
+    const std::shared_ptr<const TableBsdf>& bsdf = table.dyed.at("");
+    const bool stale =
+        mapped_ != bsdf || light_ != mapped_light_ || transmitted_ != mapped_transmitted_;
+    if (stale) {
+        const glm::vec3 from = disc_direction(light_);
+        if (!map_)
+            map_ = std::make_unique<Texture>();
+        map_->set(hemisphere_map(*bsdf, from, transmitted_, kMapSize), kMapSize, kMapSize);
+        weft_curve_ = intensity_profile(*bsdf, from, false, kCurvePoints);
+        warp_curve_ = intensity_profile(*bsdf, from, true, kCurvePoints);
+        mapped_ = bsdf;
+        mapped_light_ = light_;
+        mapped_transmitted_ = transmitted_;
+    }
+    const float side = 10 * ImGui::GetFontSize();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::InvisibleButton("map", {side, side});
+    if (ImGui::IsItemActive()) {
+        const ImVec2 mouse = ImGui::GetIO().MousePos;
+        light_ = {2 * (mouse.x - corner.x) / side - 1, 1 - 2 * (mouse.y - corner.y) / side};
+        light_ /= std::max(1.0f, glm::length(light_));
+    }
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddImage(map_->id(), corner, {corner.x + side, corner.y + side});
+    const ImVec2 lamp(corner.x + 0.5f * side * (1 + light_.x),
+                      corner.y + 0.5f * side * (1 - light_.y));
+    list.AddCircle(lamp, 0.35f * ImGui::GetFontSize(), IM_COL32(255, 220, 90, 255), 0, 2);
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x);
+    draw_curve("along the weft", weft_curve_);
+    draw_curve("along the warp", warp_curve_);
+    ImGui::PopItemWidth();
+    ImGui::EndGroup();
+    ImGui::Checkbox("transmitted", &transmitted_);
+    ImGui::SameLine();
+    ImGui::TextDisabled("light from the ring, drag it");
+}
+
+void ClothPanel::draw_save(Session& session, const std::filesystem::path& file) {
+    ImGui::InputText("##target", target_, sizeof target_);
+    ImGui::SameLine();
+    if (!ImGui::Button("save"))
+        return;
+    session.save_cloth(file, file.parent_path() / target_);
+}
+
+void ClothPanel::draw(Session& session, const std::filesystem::path& file) {
+    const auto found = session.documents().find(file);
+    if (found == session.documents().end()) {
+        ImGui::TextWrapped("No cloth is worn: choose one at the left.");
+        return;
+    }
+    const ClothDocument& document = found->second;
+    if (file_ != file) {
+        file_ = file;
+        const std::string name = file.stem().string() + "-edited.toml";
+        std::strncpy(target_, name.c_str(), sizeof target_ - 1);
+    }
+    if (document.cloth && document.cloth != shown_) {
+        shown_ = document.cloth;
+        cloth_ = *shown_;
+    }
+    ImGui::PushItemWidth(0.62f * ImGui::GetContentRegionAvail().x);
+    ImGui::TextWrapped("%s%s", file.filename().string().c_str(),
+                       document.edited ? " (edited)" : "");
+    if (document.waiting)
+        ImGui::TextUnformatted("being measured …");
+    else if (document.table)
+        ImGui::TextUnformatted(fmt::format("ε {:.3f} after {:.1f} s", document.table->accuracy,
+                                           document.table->seconds)
+                                   .c_str());
+    if (!document.error.empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, kRed);
+        ImGui::TextWrapped("%s", document.error.c_str());
+        ImGui::PopStyleColor();
+    }
+    if (document.cloth &&
+        ImGui::CollapsingHeader("Weave and yarns", ImGuiTreeNodeFlags_DefaultOpen)) {
+        if (draw_cloth_controls(cloth_))
+            session.edit_cloth(file, cloth_);
+        draw_save(session, file);
+    }
+    if (document.table && ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen))
+        draw_light(*document.table);
+    ImGui::PopItemWidth();
+}
+
+} // namespace rapport

@@ -1,0 +1,159 @@
+#include "renderer/preview/cloth_worker.h"
+
+#include "renderer/core/error.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rapport {
+namespace {
+
+constexpr double kFinestAccuracy = 0.1;
+constexpr uint64_t kMostPaths = 1 << 20; ///< per direction, for cloths whose light is hard to count
+
+bool is_stored(const std::filesystem::path& file) { return file.extension() == ".bsdf"; }
+
+std::shared_ptr<const Cloth> read(const std::filesystem::path& file) {
+    if (file.extension() == ".wif")
+        return std::make_shared<const Cloth>(viscose_cloth(file));
+    if (file.extension() != ".toml")
+        throw FileError(file.string(), "", "a cloth as .bsdf, .toml or .wif", "another ending");
+    return std::make_shared<const Cloth>(read_cloth(file));
+}
+
+/// `name` is for messages.
+ClothTable ready(BsdfTable table, std::shared_ptr<const Cloth> cloth, const std::string& name) {
+    ClothTable made;
+    made.cloth = std::move(cloth);
+    made.accuracy = table.largest_accuracy();
+    const auto dye = [&](const std::string& colourway) {
+        made.dyed[colourway] =
+            std::make_shared<const TableBsdf>(table.in_colourway(colourway, name), name);
+    };
+    dye("");
+    for (const auto& [colourway, scattering] : table.colourways)
+        dye(colourway);
+    made.table = std::make_shared<const BsdfTable>(std::move(table));
+    return made;
+}
+
+} // namespace
+
+ClothTable first_table(const std::filesystem::path& file) {
+    if (is_stored(file))
+        return ready(read_table(file), nullptr, file.string());
+    RisingMeasurement measurement(read(file));
+    measurement.advance({});
+    return ready(measurement.table(), measurement.cloth(), file.string());
+}
+
+ClothWorker::ClothWorker() : thread_([this] { run(); }) {}
+
+ClothWorker::~ClothWorker() {
+    {
+        const std::scoped_lock lock(mutex_);
+        closing_ = stop_current_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+uint64_t ClothWorker::request(const std::filesystem::path& file,
+                              std::shared_ptr<const Cloth> cloth) {
+    auto task = std::make_shared<Task>();
+    task->file = file;
+    task->cloth = std::move(cloth);
+    task->asked = Clock::now();
+    uint64_t number;
+    {
+        const std::scoped_lock lock(mutex_);
+        number = task->request = ++requests_;
+        tasks_[file] = std::move(task);
+        if (current_ && !stop_current_) {
+            stop_current_ = true;
+            stopped_at_ = Clock::now();
+        }
+    }
+    changed_.notify_all();
+    return number;
+}
+
+std::vector<ClothWorker::News> ClothWorker::take_news() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(news_, {});
+}
+
+std::filesystem::path ClothWorker::working_on() const {
+    const std::scoped_lock lock(mutex_);
+    return current_ ? current_->file : std::filesystem::path();
+}
+
+double ClothWorker::seconds_to_stop() const {
+    const std::scoped_lock lock(mutex_);
+    return seconds_to_stop_;
+}
+
+void ClothWorker::tell(News news) {
+    const std::scoped_lock lock(mutex_);
+    // What has been asked for anew in the meantime is of no interest any more.
+    const auto task = tasks_.find(news.file);
+    if (task != tasks_.end() && task->second->request == news.request)
+        news_.push_back(std::move(news));
+}
+
+void ClothWorker::run() {
+    const auto paths = [](const auto& task) {
+        return task.second->measurement ? task.second->measurement->paths() : 0;
+    };
+    for (;;) {
+        std::shared_ptr<Task> task;
+        {
+            std::unique_lock lock(mutex_);
+            if (stop_current_ && current_)
+                seconds_to_stop_ =
+                    std::chrono::duration<double>(Clock::now() - stopped_at_).count();
+            current_ = nullptr;
+            changed_.wait(lock, [&] { return closing_ || !tasks_.empty(); });
+            if (closing_)
+                return;
+            task = current_ = std::ranges::min_element(tasks_, {}, paths)->second;
+            stop_current_ = false;
+        }
+        bool more = true;
+        try {
+            more = advance(*task, [this] { return stop_current_.load(); });
+        } catch (const Stopped&) { // a newer task may come first
+        } catch (const std::exception& error) {
+            tell({task->file, task->request, nullptr, error.what()});
+            more = false;
+        }
+        const std::scoped_lock lock(mutex_);
+        const auto own = tasks_.find(task->file);
+        if (!more && own != tasks_.end() && own->second == task)
+            tasks_.erase(own);
+    }
+}
+
+bool ClothWorker::advance(Task& task, const StopSignal& stopped) {
+    const auto tell_of = [&](ClothTable table) {
+        table.seconds = std::chrono::duration<double>(Clock::now() - task.asked).count();
+        tell({task.file, task.request, std::make_shared<const ClothTable>(std::move(table)), {}});
+    };
+    if (!task.cloth && is_stored(task.file)) {
+        tell_of(first_table(task.file));
+        return false;
+    }
+    if (!task.measurement)
+        task.measurement.emplace(task.cloth ? task.cloth : read(task.file));
+    RisingMeasurement& measurement = *task.measurement;
+    measurement.advance(stopped);
+    const bool done = measurement.table().largest_accuracy() <= kFinestAccuracy ||
+                      measurement.paths() >= kMostPaths;
+    if (done || measurement.paths() >= 2 * task.told_paths) {
+        task.told_paths = measurement.paths();
+        tell_of(ready(measurement.table(), measurement.cloth(), task.file.string()));
+    }
+    return !done;
+}
+
+} // namespace rapport

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "vgsp/measure_cloth.h"
+
+#include <memory>
+
+namespace rapport {
+
+/// Measures a cloth in rounds, of whose results the mean is taken, so that there is a table soon
+/// and a better one after every round. The first round is hasty: fibres of coarser cylinders,
+/// colours solved for by fewer paths; its table is dropped once the second is there. All others
+/// trace equally many paths in the same micro-element, each with random numbers of its own.
+class RisingMeasurement {
+  public:
+    explicit RisingMeasurement(std::shared_ptr<const Cloth> cloth) : cloth_(std::move(cloth)) {}
+
+    /// One more round. Throws FileError for a cloth that cannot exist, and Stopped, leaving all as
+    /// it was.
+    void advance(const StopSignal& stopped);
+
+    int rounds() const { return rounds_; }
+    /// Of all sides and directions; ε is that of the mean, errors of rounds being independent.
+    const BsdfTable& table() const { return table_; }
+    uint64_t paths() const { return table_.paths.empty() ? 0 : table_.paths[0]; } ///< per direction
+    const std::shared_ptr<const Cloth>& cloth() const { return cloth_; }
+
+  private:
+    struct Bench {
+        bool hasty;
+        kernel::FibreTracer tracer;
+        ClothOptics optics;
+    };
+    std::unique_ptr<const Bench> set_up(bool hasty, const GoniophotometerSettings& settings) const;
+
+    std::shared_ptr<const Cloth> cloth_;
+    std::unique_ptr<const Bench> bench_; ///< of the last round
+    BsdfTable table_;
+    int rounds_ = 0;
+};
+
+/// Makes `mean`, of some paths, the mean over those of `more` too, which has the same directions
+/// and colourways. The bins' own error, which paths do not lessen, stays.
+void add_to_mean(BsdfTable& mean, const BsdfTable& more);
+
+} // namespace rapport

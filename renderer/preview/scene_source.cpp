@@ -1,0 +1,39 @@
+#include "renderer/preview/scene_source.h"
+
+#include "renderer/core/error.h"
+#include "renderer/scene/scene_builder.h"
+#include "renderer/scene/scene_file.h"
+
+#include <fmt/format.h>
+
+namespace rapport {
+
+LoadedScene load_scene(const SceneSource& source, const ClothTables& known) {
+    LoadedScene loaded;
+    const auto load_table = [&](const std::filesystem::path& path, const std::string& colourway) {
+        const std::filesystem::path file = std::filesystem::weakly_canonical(path);
+        auto& table = loaded.tables[file];
+        if (const auto found = known.find(file); !table && found != known.end())
+            table = found->second;
+        if (!table)
+            table = std::make_shared<const ClothTable>(first_table(file));
+        return in_colourway(*table, file, colourway);
+    };
+    SceneDescription description = read_scene(source.path, {1024, 1024});
+    description.settings.seed = source.seed;
+    loaded.scene = std::make_shared<const Scene>(
+        build_scene(description, {source.cloths, load_table, source.colourways}, loaded.warnings));
+    return loaded;
+}
+
+std::shared_ptr<const TableBsdf> in_colourway(const ClothTable& table,
+                                              const std::filesystem::path& file,
+                                              const std::string& colourway) {
+    const auto found = table.dyed.find(colourway);
+    if (found == table.dyed.end())
+        throw FileError(file.string(), "", "the name of a colourway of this cloth",
+                        fmt::format("\"{}\"", colourway));
+    return found->second;
+}
+
+} // namespace rapport

@@ -1,0 +1,319 @@
+#include "renderer/preview/session.h"
+
+#include "renderer/core/atomic_file.h"
+#include "renderer/core/png.h"
+#include "renderer/preview/camera_file.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+
+namespace rapport {
+namespace {
+
+constexpr float kZoomStep = 1.15f;
+
+/// Of all surfaces that could wear a cloth, or, if there are none, of all that do not shine.
+Box subject_of(const Scene& scene) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (const bool with_uvs : {true, false}) {
+        Box box{glm::vec3(kInfinity), glm::vec3(-kInfinity)};
+        for (const Surface& surface : scene.surfaces()) {
+            if (surface.emission != Rgb(0) || (with_uvs && surface.mesh->uvs.empty()))
+                continue;
+            for (const glm::vec3& p : surface.mesh->positions) {
+                box.low = glm::min(box.low, p);
+                box.high = glm::max(box.high, p);
+            }
+        }
+        if (box.low.x <= box.high.x)
+            return box;
+    }
+    return {};
+}
+
+bool ready(const auto& future) {
+    return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+} // namespace
+
+Session::Session(SceneSource source) : source_(std::move(source)) {
+    take(load_scene(source_));
+    watch_.add(source_.path);
+}
+
+Session::~Session() = default;
+
+void Session::take(LoadedScene loaded) {
+    base_ = worn_ = loaded.scene;
+    subject_ = subject_of(*base_);
+    if (!camera_)
+        camera_.emplace(base_->camera, subject_);
+    wearers_ = rapport::wearers(*base_);
+    light_kinds_ = rapport::light_kinds(*base_);
+    choices_ = worn_cloths(*base_);
+    for (const auto& [name, choice] : own_choices_)
+        if (wearers_.contains(name))
+            choices_[name] = choice;
+    for (const auto& [file, table] : loaded.tables)
+        if (!documents_.contains(file)) {
+            ClothDocument& document = documents_[file];
+            document.table = table;
+            document.cloth = table->cloth;
+            watch_.add(file);
+            if (document.cloth)
+                ask(file, document.cloth);
+            document.waiting = false; // it has a table, in haste
+        }
+    fill_shelf();
+    for (const std::string& warning : loaded.warnings)
+        notes_.push_back("warning: " + warning);
+    redress_ = true;
+    restart();
+}
+
+void Session::fill_shelf() {
+    std::set<std::filesystem::path> folders, files;
+    for (const auto& [file, document] : documents_)
+        folders.insert(file.parent_path());
+    for (const std::filesystem::path& folder : folders) {
+        std::error_code error;
+        for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+            if (entry.path().extension() == ".toml" || entry.path().extension() == ".bsdf")
+                files.insert(std::filesystem::weakly_canonical(entry.path()));
+    }
+    shelf_.assign(files.begin(), files.end());
+}
+
+void Session::resize(const glm::ivec2& resolution) {
+    if (resolution == camera_->camera().resolution || resolution.x < 1 || resolution.y < 1)
+        return; // the same, or minimised
+    camera_->resize(resolution);
+    restart();
+}
+
+void Session::orbit(const glm::vec2& pixels) {
+    camera_->orbit(pixels);
+    restart();
+}
+
+void Session::pan(const glm::vec2& pixels) {
+    camera_->pan(pixels);
+    restart();
+}
+
+void Session::zoom(float steps) {
+    camera_->zoom(std::pow(kZoomStep, steps));
+    restart();
+}
+
+void Session::focus(const glm::vec2& at) {
+    const std::optional<SurfacePoint> point = base_->intersect(camera_->camera().ray(at));
+    if (!point)
+        return;
+    camera_->focus(point->position);
+    restart();
+}
+
+void Session::frame_all() {
+    camera_->frame(subject_);
+    restart();
+}
+
+void Session::open(const std::filesystem::path& file) {
+    if (documents_.contains(file))
+        return;
+    ask(file, nullptr);
+    watch_.add(file);
+}
+
+void Session::ask(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth) {
+    ClothDocument& document = documents_[file];
+    document.request = worker_.request(file, std::move(cloth));
+    document.waiting = true;
+    document.error.clear();
+}
+
+void Session::choose_cloth(const std::string& material, const ClothChoice& choice) {
+    ClothChoice canonical = choice;
+    canonical.file = std::filesystem::weakly_canonical(choice.file);
+    choices_[material] = own_choices_[material] = canonical;
+    open(canonical.file);
+    redress_ = true;
+    restart();
+}
+
+void Session::set_lights(const LightSettings& lights) {
+    if (lights == lights_)
+        return;
+    lights_ = lights;
+    redress_ = true;
+    restart();
+}
+
+void Session::edit_cloth(const std::filesystem::path& file, Cloth cloth) {
+    ClothDocument& document = documents_[file];
+    document.cloth = std::make_shared<const Cloth>(std::move(cloth));
+    document.edited = true;
+    ask(file, document.cloth);
+}
+
+void Session::attempt(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const std::exception& error) {
+        notes_.push_back(error.what());
+    }
+}
+
+void Session::save_cloth(const std::filesystem::path& file, const std::filesystem::path& target) {
+    attempt([&] {
+        ClothDocument& document = documents_.at(file);
+        const std::string text = cloth_text(*document.cloth);
+        write_stream_atomically(target, [&](std::ofstream& stream) { stream << text; });
+        const std::filesystem::path saved = std::filesystem::weakly_canonical(target);
+        watch_.add(saved);
+        notes_.push_back("saved " + saved.string());
+        document.edited = false;
+        if (saved != file)
+            go_on_with(saved, file);
+    });
+}
+
+/// What was worn from `file` is worn from `target`, where it has just been written.
+void Session::go_on_with(const std::filesystem::path& target, const std::filesystem::path& file) {
+    documents_[target] = documents_.at(file);
+    const bool waiting = documents_[target].waiting;
+    ask(target, documents_[target].cloth);
+    documents_[target].waiting = waiting;
+    ask(file, nullptr); // is again what it is on the disk
+    for (auto& [name, choice] : choices_)
+        if (choice.file == file) {
+            choice.file = target;
+            own_choices_[name] = choice;
+        }
+    fill_shelf();
+}
+
+void Session::save_picture(const std::filesystem::path& exr, const std::filesystem::path& png) {
+    if (saving_.valid())
+        return; // the last one is still being written
+    const std::shared_ptr<const TracedPicture> shown = picture();
+    if (!shown)
+        return;
+    saving_ = std::async(std::launch::async, [=, tone = tone, scene = source_.path.string()] {
+        try {
+            Image image = shown->image;
+            image.attributes["command"] = "rapport view " + scene;
+            image.attributes["samples"] = std::to_string(shown->samples);
+            write_exr(image, exr);
+            write_png_bytes(displayed(image, tone), image.width, image.height, 4, png);
+            return fmt::format("saved {} and {}: {} x {}, {} samples a pixel", exr.string(),
+                               png.string(), image.width, image.height, shown->samples);
+        } catch (const std::exception& error) {
+            return std::string(error.what());
+        }
+    });
+}
+
+void Session::save_shown() {
+    const std::string stem = source_.path.stem().string() + "-view";
+    save_picture(stem + ".exr", stem + ".png");
+}
+
+void Session::save_camera() {
+    attempt([&] {
+        std::filesystem::path copy = source_.path;
+        copy.replace_filename(copy.stem().string() + "-view.pbrt");
+        rapport::save_camera(camera(), source_.path, copy);
+        notes_.push_back("saved " + copy.string());
+    });
+}
+
+std::string Session::error() const { return scene_error_.empty() ? tracer_.error() : scene_error_; }
+
+void Session::look_at_files() {
+    for (const std::filesystem::path& file : watch_.changed()) {
+        if (file != source_.path) {
+            documents_[file].edited = false;
+            ask(file, nullptr);
+        } else if (!reload_.valid()) {
+            ClothTables known;
+            for (const auto& [cloth, document] : documents_)
+                if (document.table)
+                    known[cloth] = document.table;
+            reload_ = std::async(std::launch::async, [source = source_, known = std::move(known)] {
+                return load_scene(source, known);
+            });
+        }
+    }
+}
+
+void Session::finish_reload() {
+    if (!ready(reload_))
+        return;
+    try {
+        take(reload_.get());
+        scene_error_.clear();
+        notes_.push_back("loaded " + source_.path.string());
+    } catch (const std::exception& error) {
+        scene_error_ = error.what();
+    }
+}
+
+void Session::take_news() {
+    for (ClothWorker::News& news : worker_.take_news()) {
+        ClothDocument& document = documents_[news.file];
+        if (news.request != document.request)
+            continue;
+        document.waiting = false;
+        document.error = news.error;
+        if (!news.table)
+            continue;
+        document.table = news.table;
+        if (!document.edited)
+            document.cloth = news.table->cloth;
+        const auto wears = [&](const auto& choice) { return choice.second.file == news.file; };
+        if (std::ranges::any_of(choices_, wears)) {
+            redress_ = true;
+            restart();
+        }
+    }
+}
+
+void Session::tick() {
+    look_at_files();
+    finish_reload();
+    take_news();
+    if (ready(saving_))
+        notes_.push_back(saving_.get());
+    // While a cloth's first table is awaited, all hands measure it: the picture will be another.
+    const bool waiting = std::ranges::any_of(choices_, [&](const auto& choice) {
+        const auto document = documents_.find(choice.second.file);
+        return document != documents_.end() && document->second.waiting;
+    });
+    tracer_.set_samples(waiting ? 1 : std::numeric_limits<int>::max());
+    if (stale_)
+        show();
+}
+
+void Session::show() {
+    if (redress_) {
+        ClothChoices ready_choices;
+        for (const auto& [name, choice] : choices_)
+            if (const auto document = documents_.find(choice.file);
+                document != documents_.end() && document->second.table &&
+                document->second.table->dyed.contains(choice.colourway))
+                ready_choices[name] = choice;
+        worn_ = std::make_shared<const Scene>(
+            dressed(*base_, ready_choices, lights_, camera_->up(),
+                    [&](const std::filesystem::path& file, const std::string& colourway) {
+                        return in_colourway(*documents_.at(file).table, file, colourway);
+                    }));
+    }
+    tracer_.show(worn_, camera_->camera());
+    stale_ = redress_ = false;
+}
+
+} // namespace rapport

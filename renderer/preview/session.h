@@ -1,0 +1,114 @@
+#pragma once
+
+#include "renderer/preview/file_watch.h"
+#include "renderer/preview/orbit_camera.h"
+#include "renderer/preview/scene_source.h"
+#include "renderer/preview/tone.h"
+#include "renderer/preview/tracer.h"
+#include "renderer/preview/wardrobe.h"
+
+#include <future>
+
+namespace rapport {
+
+/// A cloth file while the window is open.
+struct ClothDocument {
+    std::shared_ptr<const Cloth> cloth;      ///< as edited; nothing for a stored table
+    std::shared_ptr<const ClothTable> table; ///< the latest; of an older edition while waiting
+    std::string error;                       ///< why there is none of this edition, or empty
+    bool edited = false;                     ///< other than the file
+    bool waiting = false;                    ///< for the first table of this edition
+    uint64_t request = 0;                    ///< of the worker; 0 = none was made
+};
+
+/// All that happens in the window, without the window: a person's actions in, pictures out. To be
+/// used from one thread, which never waits: reading, measuring and tracing happen in others.
+class Session {
+  public:
+    /// Loads the scene; FileError where it cannot.
+    explicit Session(SceneSource source);
+    ~Session();
+
+    // What a person does in the picture; positions and ways are in its pixels, y down.
+    void resize(const glm::ivec2& resolution);
+    void orbit(const glm::vec2& pixels);
+    void pan(const glm::vec2& pixels);
+    void zoom(float steps); ///< a notch of the wheel each, nearer if positive
+    void focus(const glm::vec2& at);
+    void frame_all();
+
+    // What a person does in the panel.
+    void choose_cloth(const std::string& material, const ClothChoice& choice);
+    void set_lights(const LightSettings& lights);
+    void edit_cloth(const std::filesystem::path& file, Cloth cloth);
+    /// Writes the cloth as edited, and goes on with that file; `notes` tells of it.
+    void save_cloth(const std::filesystem::path& file, const std::filesystem::path& target);
+    /// Writes the picture as it is: the EXR with all layers, the PNG as displayed. In the
+    /// background; `notes` tells of it.
+    void save_picture(const std::filesystem::path& exr, const std::filesystem::path& png);
+    /// The same, named after the scene, in the working folder.
+    void save_shown();
+    /// A copy of the scene file, seen from where the camera is, beside it; `notes` tells of it.
+    void save_camera();
+
+    /// Takes in what the background has finished and what changed on the disk; once a frame.
+    void tick();
+    Tone tone; ///< of the display
+
+    // What there is to see.
+    std::shared_ptr<const TracedPicture> picture() const { return tracer_.picture(); }
+    const Camera& camera() const { return camera_->camera(); }
+    const Scene& scene() const { return *base_; }
+    const ClothChoices& choices() const { return choices_; }
+    const std::set<std::string>& wearers() const { return wearers_; }
+    const LightSettings& lights() const { return lights_; }
+    const LightKinds& light_kinds() const { return light_kinds_; }
+    const std::map<std::filesystem::path, ClothDocument>& documents() const { return documents_; }
+    /// Cloth files beside those in use, sorted.
+    const std::vector<std::filesystem::path>& shelf() const { return shelf_; }
+    const SceneSource& source() const { return source_; }
+    /// What went wrong with the scene or the picture, or empty; the old scene stays.
+    std::string error() const;
+    /// What was done, the latest last.
+    const std::vector<std::string>& notes() const { return notes_; }
+    const Tracer& tracer() const { return tracer_; }
+    const ClothWorker& worker() const { return worker_; }
+
+  private:
+    /// Runs what writes files; what goes wrong becomes a note.
+    void attempt(const std::function<void()>& action);
+    void go_on_with(const std::filesystem::path& target, const std::filesystem::path& file);
+    void take(LoadedScene loaded);
+    void open(const std::filesystem::path& file);
+    void ask(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth);
+    void take_news();
+    void look_at_files();
+    void finish_reload();
+    void fill_shelf();
+    void show();
+    void restart() { stale_ = true; }
+
+    SceneSource source_;
+    std::shared_ptr<const Scene> base_; ///< as it was loaded
+    std::shared_ptr<const Scene> worn_; ///< as it is shown
+    Box subject_;
+    std::optional<OrbitCamera> camera_;
+    ClothChoices choices_;
+    ClothChoices own_choices_; ///< those that a person made, which outlive a reload
+    std::set<std::string> wearers_;
+    LightSettings lights_;
+    LightKinds light_kinds_;
+    std::map<std::filesystem::path, ClothDocument> documents_;
+    std::vector<std::filesystem::path> shelf_;
+    FileWatch watch_;
+    std::string scene_error_;
+    std::vector<std::string> notes_;
+    bool stale_ = true;    ///< the picture is of another view
+    bool redress_ = false; ///< and of other cloths or lights
+    std::future<LoadedScene> reload_;
+    std::future<std::string> saving_;
+    ClothWorker worker_;
+    Tracer tracer_;
+};
+
+} // namespace rapport

@@ -1,0 +1,195 @@
+#include "renderer/integrator/path_tracer.h"
+#include "renderer/preview/session.h"
+#include "tests/support/sessions.h"
+
+// The window without the window: the same calls as its input makes.
+
+namespace rapport {
+namespace {
+
+using tests::next_picture;
+using tests::SquareScene;
+using tests::tick_until;
+
+double mean(const Image& image, const std::string& channel) {
+    double sum = 0;
+    for (const float value : *image.find(channel))
+        sum += value;
+    return sum / static_cast<double>(image.find(channel)->size());
+}
+
+double difference(const Image& a, const Image& b) { return compare(a, b).rms; }
+
+TEST(Session, ThePictureIsTheOfflineRender) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    session.resize({64, 48});
+    session.orbit({4, 3});
+    const std::shared_ptr<const TracedPicture> picture = next_picture(session, 64);
+
+    const LoadedScene loaded = load_scene({files.scene()});
+    const auto offline = [&](uint64_t seed, const LightSettings& lights) {
+        Scene scene = dressed(*loaded.scene, {}, lights, {0, 1, 0}, {});
+        scene.camera = session.camera();
+        scene.settings.samples = picture->samples;
+        scene.settings.seed = seed;
+        return render(scene).image();
+    };
+    EXPECT_EQ(picture->image.data, offline(0, {}).data);
+    EXPECT_TRUE(compare(picture->image, offline(1, {})).agree);
+    LightSettings brighter;
+    brighter.sky = 1.03f;
+    EXPECT_FALSE(compare(picture->image, offline(1, brighter)).agree);
+}
+
+TEST(Session, EachActionChangesThePicture) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    session.resize({64, 48});
+    constexpr int kSamples = 16; // for the test to know the noise
+    Image last = next_picture(session, kSamples)->image;
+    const auto expect_change = [&](const char* what, const std::function<void()>& action) {
+        action();
+        const Image now = next_picture(session, kSamples)->image;
+        EXPECT_FALSE(compare(now, last).agree) << what;
+        last = now;
+    };
+    expect_change("orbit", [&] { session.orbit({12, 5}); });
+    expect_change("pan", [&] { session.pan({8, 2}); });
+    expect_change("zoom", [&] { session.zoom(3); });
+    expect_change("focus", [&] { session.focus({36, 30}); });
+    expect_change("frame", [&] { session.frame_all(); });
+    expect_change("rotation", [&] {
+        ClothChoice turned = session.choices().at("Body");
+        turned.rotation = 90;
+        session.choose_cloth("Body", turned);
+    });
+    expect_change("lamps", [&] {
+        LightSettings lights;
+        lights.lamps = 0.2f;
+        session.set_lights(lights);
+    });
+    // The same lights again are no change: the picture goes on.
+    const uint64_t view = session.tracer().latest();
+    session.set_lights(session.lights());
+    session.tick();
+    EXPECT_EQ(session.tracer().latest(), view);
+    EXPECT_TRUE(compare(next_picture(session, kSamples + 8)->image, last).agree);
+}
+
+TEST(Session, SurvivesAStormOfResizes) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    for (int i = 0; i < 200; ++i) {
+        session.resize({i % 7 == 0 ? 0 : 16 + 37 * i % 200, 16 + 53 * i % 150});
+        session.tick();
+    }
+    session.resize({80, 60});
+    const std::shared_ptr<const TracedPicture> picture = next_picture(session, 1);
+    EXPECT_EQ(picture->image.width, 80);
+    EXPECT_EQ(picture->image.height, 60);
+    EXPECT_EQ(session.error(), "");
+}
+
+TEST(Session, AClothEditChangesThePictureAndTheErrorFalls) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    session.resize({64, 48});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    const Image before = next_picture(session, 16)->image;
+    Cloth red = *document().cloth;
+    red.warp.fibre.color = {0.75, 0.1, 0.1};
+    red.weft.fibre.color = {0.75, 0.1, 0.1};
+    session.edit_cloth(files.cloth(), red);
+    EXPECT_TRUE(document().waiting);
+    tick_until(session, [&] { return !document().waiting; });
+    const double first = document().table->accuracy;
+    const Image after = next_picture(session, 16)->image;
+    EXPECT_GT(mean(after, "albedo.R"), 1.5 * mean(before, "albedo.R"));
+    EXPECT_LT(mean(after, "albedo.G"), 0.7 * mean(before, "albedo.G"));
+    tick_until(session, [&] { return document().table->accuracy < 0.4 * first; });
+
+    session.save_cloth(files.cloth(), files / "red.toml");
+    EXPECT_EQ(session.choices().at("Body").file.filename(), "red.toml");
+    EXPECT_EQ(read_cloth(files / "red.toml").warp.fibre.color, red.warp.fibre.color);
+    EXPECT_EQ(read_cloth(files.cloth()).warp.fibre.color->at(0), 0.3);
+}
+
+TEST(Session, TakesFiftyClothEditsOneAfterTheOther) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    session.resize({64, 48});
+    Cloth cloth = *session.documents().at(files.cloth()).cloth;
+    for (int i = 0; i < 50; ++i) {
+        cloth.ends_per_cm = 15 + 0.1 * i;
+        if (i % 10 == 5)
+            cloth.ends_per_cm = 900; // cannot be
+        session.edit_cloth(files.cloth(), cloth);
+        for (int tick = 0; tick < 5; ++tick) {
+            session.tick();
+            std::this_thread::sleep_for(std::chrono::milliseconds(4));
+        }
+    }
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    tick_until(session, [&] { return !document().waiting; });
+    EXPECT_EQ(document().error, "");
+    EXPECT_EQ(document().table->cloth->ends_per_cm, cloth.ends_per_cm);
+    EXPECT_LT(session.worker().seconds_to_stop(), 1);
+    EXPECT_GE(next_picture(session, 2)->samples, 2);
+}
+
+TEST(Session, KeepsTheOldClothUntilABrokenOneIsMended) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    tests::write_bytes(files.cloth(), "name = \"broken\"\nwarp = 3\n");
+    tick_until(session, [&] { return !document().error.empty(); });
+    EXPECT_NE(document().error.find("cloth.toml"), std::string::npos) << document().error;
+    EXPECT_EQ(document().table->cloth->name, "coarse");
+    tests::write_bytes(files.cloth(), tests::coarse_cloth("0.55"));
+    tick_until(session, [&] { return document().error.empty() && !document().waiting; });
+    EXPECT_EQ(document().table->cloth->warp.fibre.color->at(0), 0.55);
+}
+
+TEST(Session, KeepsTheOldSceneUntilABrokenOneIsMended) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    session.resize({64, 48});
+    const Image before = next_picture(session, 4)->image;
+    const std::string text = tests::read_bytes(files.scene());
+    tests::write_bytes(files.scene(), text + "Shape \"sphere\"\n");
+    tick_until(session, [&] { return !session.error().empty(); });
+    EXPECT_NE(session.error().find("sphere"), std::string::npos) << session.error();
+    EXPECT_EQ(session.scene().surfaces().size(), 2u);
+    std::string mended = text;
+    mended.replace(mended.find("[0.5 0.5 0.6]"), 13, "[0.1 0.1 0.1]");
+    tests::write_bytes(files.scene(), mended + "# mended\n");
+    tick_until(session, [&] { return session.error().empty() && !session.notes().empty(); });
+    EXPECT_GT(difference(next_picture(session, 4)->image, before), 0.05);
+}
+
+TEST(Session, SavesThePictureThatIsShown) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    session.resize({64, 48});
+    next_picture(session, 4);
+    session.save_picture(files / "p.exr", files / "p.png");
+    tick_until(session, [&] { return !session.notes().empty(); });
+    const Image image = read_exr(files / "p.exr");
+    EXPECT_EQ(image.width, 64);
+    EXPECT_NE(image.find("variance.G"), nullptr);
+    EXPECT_TRUE(std::filesystem::exists(files / "p.png"));
+    session.save_picture(files / "absent/p.exr", files / "p.png");
+    tick_until(session, [&] { return session.notes().size() == 2; });
+    EXPECT_NE(session.notes().back().find("absent"), std::string::npos);
+    session.save_camera();
+    EXPECT_EQ(session.notes().back(), "saved " + (files / "scene-view.pbrt").string());
+}
+
+TEST(Session, RefusesASceneThatIsNone) {
+    EXPECT_THROW(Session({"absent.pbrt"}), std::exception);
+    EXPECT_THROW(Session({"scene.txt"}), std::exception);
+}
+
+} // namespace
+} // namespace rapport
