@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <queue>
 #include <span>
@@ -16,6 +15,9 @@ constexpr double kLeastSine = 1e-3;
 constexpr double kLeastUvSine = 1e-8;
 
 bool is_usable(double x) { return x > 0 && std::isfinite(x); }
+
+/// Whether a vector of this length can be kept as floats, and its square too.
+bool fits_float(double length) { return length > 1e-18 && length < 1e18; }
 
 glm::dvec3 corner_normal(const std::vector<glm::vec3>& p, const glm::uvec3& t) {
     const glm::dvec3 origin = p[t.x];
@@ -62,10 +64,8 @@ WeftWarp weft_warp(const glm::dvec3& position_s, const glm::dvec3& position_t,
     const glm::dvec3 warp = (uv_s.x * position_t - uv_t.x * position_s) / determinant;
     const glm::dvec3 cross = glm::cross(weft, warp);
     const double side = glm::dot(cross, normal), sides = glm::length(weft) * glm::length(warp);
-    // The frame is kept as floats, whose range is smaller.
-    const bool in_range = sides > std::numeric_limits<float>::min() &&
-                          sides < double{std::numeric_limits<float>::max()};
-    if (!in_range || !(std::abs(side) > kLeastSine * sides))
+    if (!fits_float(glm::length(weft)) || !fits_float(glm::length(warp)) ||
+        !(std::abs(side) > kLeastSine * sides))
         return {{}, {}, false};
     if (side < 0)
         weft = -weft;
