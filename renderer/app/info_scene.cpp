@@ -2,6 +2,7 @@
 #include "renderer/core/image.h"
 #include "renderer/scene/gltf.h"
 #include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/uv_scale.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -37,11 +38,13 @@ Info model_info(const std::filesystem::path& path) {
                                       {"material", part.material},
                                       {"triangles", triangles},
                                       {"vertices", part.mesh.positions.size()},
-                                      {"uvs", uvs}});
+                                      {"uvs", uvs},
+                                      {"metres_per_uv", metres_per_uv(part.mesh)}});
         fmt::format_to(std::back_inserter(info.text),
                        "{}: material \"{}\", {} triangles, {} vertices, {}\n", part.name,
                        part.material, triangles, part.mesh.positions.size(),
-                       uvs ? "with UVs" : "without UVs");
+                       uvs ? fmt::format("a unit of UV is {:.3g} m", metres_per_uv(part.mesh))
+                           : "without UVs");
     }
     info.json["warnings"] = model.warnings;
     for (const std::string& warning : model.warnings)

@@ -12,9 +12,9 @@ namespace rapport {
 namespace {
 
 constexpr int kHighestLevel = 64;
-/// Where facets make less of an error than the noise of 64 samples a pixel, and a model that fills
-/// a picture of 1024² takes about a second (tests/bench/charts/tessellation.svg) [pixels].
-constexpr float kDefaultEdgeLength = 2;
+/// Where facets make less of an error than the noise of 64 samples a pixel in a picture of 512², and
+/// less in larger ones (tests/bench/charts/tessellation.svg) [pixels].
+constexpr float kDefaultEdgeLength = 4;
 /// Into how many pieces an edge is cut at most, also right before the camera.
 constexpr int kHighestRate = 256;
 constexpr float kDefaultCreaseAngle = 30; ///< [degrees]
@@ -81,7 +81,7 @@ TriangleMesh refine(const GltfPart& part, const SubdivisionOptions& options, boo
 /// A glTF or GLB model, metres, in glTF's axes (+y up); one part per primitive, subdivided.
 ///     "string filename"   required
 ///     "float edgelength"  edges are cut into pieces that are seen under this many pixels at most,
-///                         if they stand square to the view; default 2
+///                         if they stand square to the view; default 4
 ///     "integer level"     instead, each edge is cut into so many; 0 = the triangles as they are
 ///     "float creaseangle" edges where the file's normals differ by more stay sharp [degrees];
 ///                         default 30

@@ -9,9 +9,9 @@
 
 // What finer tessellation buys: lines of model, curve, parameter (pixels, or pieces to an edge),
 // triangles, seconds to build the scene, and error of the picture: RMS difference from the finest
-// over the mean, of the pixels that show the model. All pictures have the same random numbers, so
-// that hardly more than their geometry differs; "noise" is what 64 samples a pixel leave for
-// comparison. charts/tessellation.py draws them:
+// over the mean, of the pixels that show the model. All pictures, of 512², have the same random
+// numbers, so that hardly more than their geometry differs; "noise" is what 64 samples a pixel
+// leave for comparison. charts/tessellation.py draws them:
 //
 //   build/tests/tests/tessellation_bench scenes/garments/dress.glb |
 //       python3 tests/bench/charts/tessellation.py
@@ -20,6 +20,7 @@ namespace rapport {
 namespace {
 
 constexpr int kReferenceLevel = 16;
+constexpr int kSamples = 16;
 
 Param number(const std::string& type, const std::string& name, std::vector<double> values) {
     Param param;
@@ -48,8 +49,8 @@ struct Measured {
 };
 
 Measured picture(const std::filesystem::path& model, const std::string& parameter, double value) {
-    SceneDescription scene = describe_model(model, {256, 256});
-    scene.settings.samples = 64;
+    SceneDescription scene = describe_model(model, {512, 512});
+    scene.settings.samples = kSamples;
     scene.settings.max_depth = 1;
     scene.shapes.back().params.add(
         number(parameter == "level" ? "integer" : "float", parameter, {value}));
@@ -95,7 +96,7 @@ int main(int count, char** arguments) {
         const auto& truth = *reference.find("G");
         const auto& variance = *reference.find("variance.G");
         std::printf("%s,noise,0,0,0,%.6f\n", model.stem().c_str(),
-                    relative_rms(reference, [&](size_t i) { return variance[i]; }));
+                    relative_rms(reference, [&](size_t i) { return variance[i] * kSamples / 64; }));
         const auto row = [&](const std::string& parameter, double value) {
             const Measured made = picture(model, parameter, value);
             std::printf("%s,%s,%g,%zu,%.4f,%.6f\n", model.stem().c_str(), parameter.c_str(), value,

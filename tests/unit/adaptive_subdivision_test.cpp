@@ -347,7 +347,7 @@ TEST(GltfShape, IsCutAsFinelyAsItIsSeen) {
     EXPECT_LE(few, 18u);
     EXPECT_GT(triangles(near, "\"float edgelength\" 1"), 20 * few);
     EXPECT_EQ(triangles(far, "\"float edgelength\" 9"), 2u);
-    EXPECT_EQ(triangles(far, ""), triangles(far, "\"float edgelength\" 2"));
+    EXPECT_EQ(triangles(far, ""), triangles(far, "\"float edgelength\" 4"));
     for (const auto& [parameters, expected] :
          {std::pair{"\"float edgelength\" 0", "above 0"},
           {"\"float edgelength\" 2 \"integer level\" 2", "either"},

@@ -5,6 +5,7 @@
 #include "renderer/scene/gltf.h"
 #include "renderer/scene/limit_surface.h"
 #include "renderer/scene/mesh_cleaning.h"
+#include "renderer/scene/uv_scale.h"
 #include "tests/support/control_meshes.h"
 #include "tests/support/long_run.h"
 #include "tests/support/shared_data.h"
@@ -341,6 +342,17 @@ TEST(FlatMesh, NormalsOfTheFileStandOnTheFaceSide) {
     EXPECT_EQ(result.normals[2], glm::vec3(0, 0, 1));
 }
 
+TEST(UvScale, IsThatOfMostOfTheSurface) {
+    IndexedMesh mesh = sheet(10, [](float, float) { return 0.0f; });
+    EXPECT_EQ(metres_per_uv(mesh), 0);
+    add_uvs(mesh, [](const glm::vec3& p) { return 1000.0f * glm::vec2(p); }); // millimetres
+    EXPECT_NEAR(metres_per_uv(mesh), 1e-3, 1e-8);
+    add_uvs(mesh, [](const glm::vec3& p) { // a corner is squeezed
+        return p.x + p.y < 0.5f ? glm::vec2(0.01f * p.x, p.y) : glm::vec2(2 * p.x, p.y / 2);
+    });
+    EXPECT_NEAR(metres_per_uv(mesh), 1, 1e-6);
+}
+
 float median_length(std::vector<glm::vec3> vectors) {
     const auto middle = vectors.begin() + static_cast<ptrdiff_t>(vectors.size() / 2);
     std::nth_element(vectors.begin(), middle, vectors.end(),
@@ -355,6 +367,7 @@ TEST(Subdivision, SharedGarmentsWhoseUvsAreMetres) {
         SubdivisionReport report;
         const TriangleMesh mesh =
             subdivide(model.parts.at(0).mesh, options(2, true), name, &report);
+        EXPECT_NEAR(metres_per_uv(model.parts.at(0).mesh), 1, 0.03) << name;
         EXPECT_NEAR(median_length(mesh.weft), 1, 0.03) << name;
         EXPECT_NEAR(median_length(mesh.warp), 1, 0.03) << name;
         EXPECT_EQ(report.mirrored + report.unrefinable + report.dropped, 0u);
