@@ -44,10 +44,11 @@ template <glm::length_t N> uint64_t hash_of(const glm::vec<N, float>& value) {
     return hash;
 }
 
-/// Keeps one of each value that the index uses, in the order of first use.
-template <class Value>
-void merge_equal(std::vector<Value>& values, std::vector<glm::uvec3>& index) {
-    FlatIndex known(values.size());
+/// Keeps the values that the index uses, in the order of first use. `name_of(kept, next)` says
+/// under which number the value `kept[next]` goes: `next`, or that of an equal one, which then
+/// stands for it.
+template <class Value, class NameOf>
+void renumber(std::vector<Value>& values, std::vector<glm::uvec3>& index, const NameOf& name_of) {
     std::vector<Value> kept;
     kept.reserve(values.size());
     std::vector<uint32_t> renamed(values.size(), kNone);
@@ -57,31 +58,28 @@ void merge_equal(std::vector<Value>& values, std::vector<glm::uvec3>& index) {
             if (name == kNone) {
                 const Value value = values[triangle[c]] + 0.0f; // −0 becomes +0
                 const auto next = static_cast<uint32_t>(kept.size());
-                name = known.find_or_add(hash_of(value), next,
-                                         [&](uint32_t other) { return kept[other] == value; });
-                if (name == next)
-                    kept.push_back(value);
+                kept.push_back(value);
+                name = name_of(kept, next);
+                if (name != next)
+                    kept.pop_back();
             }
             triangle[c] = name;
         }
     values = std::move(kept);
 }
 
-/// Keeps the values that the index uses, in the order of first use.
-void drop_unused(std::vector<glm::vec3>& values, std::vector<glm::uvec3>& index) {
-    std::vector<glm::vec3> kept;
-    kept.reserve(values.size());
-    std::vector<uint32_t> renamed(values.size(), kNone);
-    for (glm::uvec3& triangle : index)
-        for (int c = 0; c < 3; ++c) {
-            uint32_t& name = renamed[triangle[c]];
-            if (name == kNone) {
-                name = static_cast<uint32_t>(kept.size());
-                kept.push_back(values[triangle[c]]);
-            }
-            triangle[c] = name;
-        }
-    values = std::move(kept);
+template <class Value>
+void merge_equal(std::vector<Value>& values, std::vector<glm::uvec3>& index) {
+    FlatIndex known(values.size());
+    renumber(values, index, [&](const std::vector<Value>& kept, uint32_t next) {
+        return known.find_or_add(hash_of(kept[next]), next,
+                                 [&](uint32_t other) { return kept[other] == kept[next]; });
+    });
+}
+
+template <class Value>
+void drop_unused(std::vector<Value>& values, std::vector<glm::uvec3>& index) {
+    renumber(values, index, [](const auto&, uint32_t next) { return next; });
 }
 
 glm::uvec3 sorted(glm::uvec3 t) {

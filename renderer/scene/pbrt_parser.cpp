@@ -1,5 +1,6 @@
 #include "renderer/scene/pbrt_parser.h"
 
+#include "renderer/scene/look_at.h"
 #include "renderer/scene/pbrt_lexer.h"
 #include "renderer/scene/pbrt_options.h"
 #include "renderer/scene/pbrt_params.h"
@@ -24,18 +25,6 @@ struct GraphicsState {
     std::shared_ptr<const MaterialDescription> material;
     std::optional<Params> area_light;
 };
-
-/// World to camera. The camera's axes are x = up × direction, y, z = direction (pbrt's).
-std::optional<glm::dmat4> look_at(const glm::dvec3& eye, const glm::dvec3& target,
-                                  const glm::dvec3& up) {
-    const glm::dvec3 direction = target - eye, side = glm::cross(up, direction);
-    if (!(glm::length(direction) > 0) ||
-        !(glm::length(side) > 1e-12 * glm::length(up) * glm::length(direction)))
-        return std::nullopt;
-    const glm::dvec3 z = glm::normalize(direction), x = glm::normalize(side);
-    return glm::inverse(glm::dmat4(glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0),
-                                   glm::dvec4(z, 0), glm::dvec4(eye, 1)));
-}
 
 class Parser {
   public:

@@ -1,15 +1,12 @@
 #include "renderer/scene/subdivision.h"
 
 #include "renderer/scene/auto_uvs.h"
-#include "renderer/scene/camera.h"
 #include "renderer/scene/limit_surface.h"
 #include "renderer/scene/pbrt_parser.h"
 #include "renderer/scene/scene_builder.h"
 #include "tests/support/control_meshes.h"
 #include "tests/support/gltf_models.h"
 #include "tests/support/long_run.h"
-
-#include <glm/gtc/matrix_transform.hpp>
 
 // Faces that are cut as finely as they are seen, creases, and quads.
 
@@ -300,26 +297,6 @@ TEST(AutoUvs, HangTheWarpVertically) {
             EXPECT_GT(result.warp[v].y, 0.5f);
         }
     }
-}
-
-TEST(SeenLength, IsThatOnTheFilmWhereASegmentStandsSquare) {
-    Camera camera;
-    camera.resolution = {400, 200};
-    camera.fov_degrees = 60;
-    camera.to_world = glm::translate(glm::mat4(1), glm::vec3(1, 2, 3));
-    const glm::dvec3 eye(1, 2, 3);
-    const double pixel = 2 * std::tan(radians(30.0)) / 200; // at distance 1
-    EXPECT_NEAR(camera.seen_length(eye + glm::dvec3(0, 0, 5), eye + glm::dvec3(0.5, 0, 5)),
-                0.1 / pixel, 1e-4);
-    EXPECT_NEAR(camera.seen_length(eye + glm::dvec3(0, 0, 5), eye + glm::dvec3(0, 0, 7)),
-                2 / 5.0 / pixel, 1e-3); // at its nearest point
-    EXPECT_EQ(camera.seen_length(eye, eye), 0);
-    EXPECT_TRUE(std::isinf(camera.seen_length(eye, eye + glm::dvec3(1, 0, 0))));
-    camera.to_world = glm::scale(camera.to_world, glm::vec3(7)); // changes nothing but the unit
-    EXPECT_NEAR(camera.seen_length(eye + glm::dvec3(0, 0, 5), eye + glm::dvec3(0.5, 0, 5)),
-                0.1 / pixel, 1e-4);
-    camera.kind = Camera::Kind::orthographic;
-    EXPECT_NEAR(camera.seen_length(eye, eye + glm::dvec3(0, 0, 7)), 100, 1e-4);
 }
 
 TEST(GltfShape, IsCutAsFinelyAsItIsSeen) {

@@ -1,5 +1,6 @@
 #include "renderer/scene/camera.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 namespace rapport {
@@ -50,6 +51,26 @@ TEST(Camera, FollowsItsTransformation) {
     expect_near(camera.ray({100, 50}).dir, glm::normalize(glm::vec3(-1, 1, 0)));
     expect_near(camera.ray({50, 0}).dir, glm::normalize(glm::vec3(-1, 0, 1)));
     EXPECT_NEAR(CameraRays(camera).depth({-4, 100, -7}), 5, 1e-4f);
+}
+
+TEST(Camera, SeenLengthIsThatOnTheFilmWhereASegmentStandsSquare) {
+    Camera camera;
+    camera.resolution = {400, 200};
+    camera.fov_degrees = 60;
+    camera.to_world = glm::translate(glm::mat4(1), glm::vec3(1, 2, 3));
+    const glm::dvec3 eye(1, 2, 3);
+    const double pixel = 2 * std::tan(radians(30.0)) / 200; // at distance 1
+    EXPECT_NEAR(camera.seen_length(eye + glm::dvec3(0, 0, 5), eye + glm::dvec3(0.5, 0, 5)),
+                0.1 / pixel, 1e-4);
+    EXPECT_NEAR(camera.seen_length(eye + glm::dvec3(0, 0, 5), eye + glm::dvec3(0, 0, 7)),
+                2 / 5.0 / pixel, 1e-3); // at its nearest point
+    EXPECT_EQ(camera.seen_length(eye, eye), 0);
+    EXPECT_TRUE(std::isinf(camera.seen_length(eye, eye + glm::dvec3(1, 0, 0))));
+    camera.to_world = glm::scale(camera.to_world, glm::vec3(7)); // changes nothing but the unit
+    EXPECT_NEAR(camera.seen_length(eye + glm::dvec3(0, 0, 5), eye + glm::dvec3(0.5, 0, 5)),
+                0.1 / pixel, 1e-4);
+    camera.kind = Camera::Kind::orthographic;
+    EXPECT_NEAR(camera.seen_length(eye, eye + glm::dvec3(0, 0, 7)), 100, 1e-4);
 }
 
 } // namespace
