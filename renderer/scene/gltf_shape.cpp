@@ -12,7 +12,7 @@ namespace rapport {
 namespace {
 
 constexpr int kHighestLevel = 64;
-/// Where facets make less of an error than the noise of 64 samples a pixel in a picture of 512², and
+/// Where facets make about the error that 64 samples a pixel leave as noise in a picture of 512², and
 /// less in larger ones (tests/bench/charts/tessellation.svg) [pixels].
 constexpr float kDefaultEdgeLength = 4;
 /// Into how many pieces an edge is cut at most, also right before the camera.
