@@ -312,7 +312,7 @@ TEST(GltfShape, IsCutAsFinelyAsItIsSeen) {
         return build_scene(parse_pbrt(folder / "scene.pbrt"), {}, warnings)
             .surfaces()
             .at(0)
-            .mesh.triangles.size();
+            .mesh->triangles.size();
     };
     const std::string near = "LookAt 0 0 3 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90",
                       far = "LookAt 0 0 30 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90";

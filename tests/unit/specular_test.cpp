@@ -182,7 +182,7 @@ TEST(SphereShape, HasItsAreaAndFrames) {
     const auto mesh = [&](const std::string& shape) {
         write_bytes(folder / "scene.pbrt", "WorldBegin Shape " + shape);
         std::vector<std::string> warnings;
-        return build_scene(parse_pbrt(folder / "scene.pbrt"), {}, warnings).surfaces().at(0).mesh;
+        return *build_scene(parse_pbrt(folder / "scene.pbrt"), {}, warnings).surfaces().at(0).mesh;
     };
     const auto area = [](const TriangleMesh& m) {
         double sum = 0;
