@@ -14,6 +14,9 @@ namespace {
 /// A drawdown wider than this is told in numbers only.
 constexpr int kWidestPicture = 64;
 
+/// Two picks to a line, by whether the warp is up in the upper and in the lower one.
+constexpr const char* kHalfBlocks[2][2] = {{" ", "▄"}, {"▀", "█"}};
+
 nlohmann::ordered_json draft_json(const Draft& draft, const char* kind) {
     nlohmann::ordered_json json;
     json["kind"] = kind;
@@ -27,9 +30,9 @@ nlohmann::ordered_json draft_json(const Draft& draft, const char* kind) {
 std::string draft_text(const Draft& draft) {
     std::string text = fmt::format("{} ends × {} picks\n", draft.ends, draft.picks);
     if (draft.ends <= kWidestPicture && draft.picks <= kWidestPicture)
-        for (int pick = draft.picks - 1; pick >= 0; --pick) { // pick 1 at the bottom
+        for (int pick = draft.picks - 1; pick >= 0; pick -= 2) { // pick 1 at the bottom
             for (int end = 0; end < draft.ends; ++end)
-                text += draft.up(end, pick) ? "█" : "·";
+                text += kHalfBlocks[draft.up(end, pick)][pick > 0 && draft.up(end, pick - 1)];
             text += '\n';
         }
     for (const std::string& warning : draft.warnings)

@@ -1,5 +1,6 @@
 #include "renderer/app/commands.h"
 #include "renderer/app/info.h"
+#include "renderer/app/info_picture.h"
 #include "renderer/core/error.h"
 
 #include <fmt/format.h>
@@ -11,7 +12,7 @@ namespace rapport {
 namespace {
 
 struct InfoOptions {
-    std::string file;
+    std::string file, picture;
     bool json = false;
 };
 
@@ -34,7 +35,11 @@ void add_info_command(CLI::App& app) {
     command->add_option("file", options->file, "Draft, cloth, table, image, model or scene")
         ->required();
     command->add_flag("--json", options->json, "For programs");
+    command->add_option("--picture", options->picture,
+                        "PNG to draw: a draft's drawdown, a cloth's fibres, a table's hemispheres");
     command->callback([options] {
+        if (!options->picture.empty())
+            return draw_picture(options->file, options->picture);
         const Info found = info(options->file);
         if (options->json)
             fmt::print("{}\n", found.json.dump(2));

@@ -1,5 +1,7 @@
 #include "renderer/integrator/film.h"
 
+#include "renderer/core/parallel.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -42,6 +44,13 @@ void Film::add(int x, int y, const FilmSample& sample) {
     pixel.warp += sample.warp;
     pixel.depth += sample.depth;
     ++pixel.hits;
+}
+
+void Film::clear(Tile& tile) {
+    for (int y = tile.first.y; y < tile.end.y; ++y)
+        std::fill_n(pixels_.begin() + static_cast<ptrdiff_t>(index(tile.first.x, y)),
+                    tile.end.x - tile.first.x, Pixel{});
+    tile.samples = 0;
 }
 
 glm::dvec3 Film::Pixel::variance_of_mean(int samples) const {
@@ -90,7 +99,8 @@ Image Film::image() const {
     if (with_variance)
         names.insert(names.end(), kVariances.begin(), kVariances.end());
     Image image(resolution_.x, resolution_.y, names);
-    for (const Tile& tile : tiles_)
+    parallel_for(tiles_.size(), [&](size_t number) {
+        const Tile& tile = tiles_[number];
         for (int y = tile.first.y; y < tile.end.y; ++y)
             for (int x = tile.first.x; x < tile.end.x; ++x) {
                 const Pixel& pixel = pixels_[index(x, y)];
@@ -108,6 +118,7 @@ Image Film::image() const {
                 for (int c = 0; with_variance && c < 3; ++c)
                     store(variance[c]);
             }
+    });
     return image;
 }
 

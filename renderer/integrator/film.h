@@ -32,6 +32,8 @@ class Film {
 
     /// Adds the next sample of a pixel; `Tile::samples` is the caller's to count up.
     void add(int x, int y, const FilmSample& sample);
+    /// Takes a tile's samples back, so that a film can serve another picture.
+    void clear(Tile& tile);
 
     /// Radiance of a tile, and the variance of its pixels' means as `image` estimates it, both in
     /// the mean over pixels and channels. No variance from fewer than two samples: infinite.

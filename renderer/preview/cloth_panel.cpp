@@ -16,8 +16,9 @@ const ImVec4 kRed{1.0f, 0.45f, 0.4f, 1};
 
 void draw_curve(const char* label, const std::vector<float>& curve) {
     ImGui::PushID(label);
-    ImGui::PlotLines("", curve.data(), static_cast<int>(curve.size()), 0, label, 0,
-                     *std::ranges::max_element(curve), {0, 4.6f * ImGui::GetFontSize()});
+    const float top = 1.35f * *std::ranges::max_element(curve); // the label stands above
+    ImGui::PlotLines("", curve.data(), static_cast<int>(curve.size()), 0, label, 0, top,
+                     {0, 4.6f * ImGui::GetFontSize()});
     ImGui::PopID();
 }
 

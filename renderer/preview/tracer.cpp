@@ -115,10 +115,11 @@ void Tracer::trace(const View& view) {
         Camera camera = view.camera;
         camera.resolution = scaled(camera.resolution, scale);
         const CameraRays rays(camera);
-        Film film(camera.resolution);
+        Film& film = film_for(scale, camera.resolution);
         if (!pass(view, rays, film, scale == first))
             return;
-        publish(view, film, scale, 1);
+        if (scale == first || !outdated(view))
+            publish(view, film, scale, 1);
         if (scale > 1)
             continue;
         Clock::time_point shown = Clock::now();
@@ -138,6 +139,18 @@ void Tracer::trace(const View& view) {
     }
 }
 
+Film& Tracer::film_for(int scale, const glm::ivec2& resolution) {
+    if (const auto found = films_.find(scale); found != films_.end()) {
+        if (found->second.resolution() == resolution) {
+            for (Film::Tile& tile : found->second.tiles())
+                tile.samples = 0; // cleared by its first pass
+            return found->second;
+        }
+        films_.erase(found);
+    }
+    return films_.emplace(scale, resolution).first->second;
+}
+
 bool Tracer::pass(const View& view, const CameraRays& rays, Film& film, bool first) {
     const Clock::time_point start = Clock::now();
     std::atomic<uint64_t> paths = 0, left_out = 0;
@@ -147,6 +160,8 @@ bool Tracer::pass(const View& view, const CameraRays& rays, Film& film, bool fir
             return;
         }
         Film::Tile& tile = film.tiles()[i];
+        if (tile.samples == 0)
+            film.clear(tile);
         sample_tile(*view.scene, rays, film, tile, tile.samples + 1);
         const glm::ivec2 size = tile.end - tile.first;
         paths += static_cast<uint64_t>(size.x) * size.y;

@@ -6,6 +6,7 @@
 #include "renderer/scene/scene.h"
 
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <thread>
 
@@ -58,6 +59,8 @@ class Tracer {
 
     void run();
     void trace(const View& view);
+    /// An empty film for one level of a view.
+    Film& film_for(int scale, const glm::ivec2& resolution);
     bool outdated(const View& view) const;
     /// One more sample of every pixel; false if the view was outdated before the end.
     bool pass(const View& view, const CameraRays& rays, Film& film, bool first);
@@ -72,8 +75,10 @@ class Tracer {
     std::shared_ptr<const TracedPicture> picture_;
     std::string error_;
     double seconds_to_stop_ = 0;
-    double paths_per_second_; ///< of the tracer's thread alone
-    std::thread thread_;      ///< last, for it uses all others
+    // Of the tracer's thread alone.
+    double paths_per_second_;
+    std::map<int, Film> films_; ///< by scale, kept because a large film takes long to allocate
+    std::thread thread_;        ///< last, for it uses all others
 };
 
 } // namespace rapport

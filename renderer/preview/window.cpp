@@ -44,6 +44,8 @@ void set_style(float scale) {
     style.ItemSpacing = {8, 5};
     for (const ImGuiCol grey : {ImGuiCol_WindowBg, ImGuiCol_ChildBg})
         style.Colors[grey] = {0.11f, 0.11f, 0.12f, 1};
+    style.Colors[ImGuiCol_SliderGrab] = {0.26f, 0.45f, 0.72f, 0.75f};
+    style.GrabMinSize = 7;
     style.Colors[ImGuiCol_FrameBg] = {0.20f, 0.20f, 0.22f, 1};
     style.Colors[ImGuiCol_Header] = {0.24f, 0.25f, 0.28f, 1};
     style.ScaleAllSizes(scale);

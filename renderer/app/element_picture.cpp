@@ -1,0 +1,138 @@
+#include "renderer/app/element_picture.h"
+
+#include "renderer/core/parallel.h"
+#include "renderer/kernel/fibre_tracer.h"
+#include "vgsp/micro_element.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace rapport {
+namespace {
+
+constexpr int kWidth = 900, kGap = 20; ///< pixels
+constexpr int kMostThreads = 12;       ///< of a repeat that are shown along each side
+constexpr double kTurnDegrees = 4;     ///< of a fibre between two segments: round enough to look at
+constexpr Canvas::Colour kBackground{1, 1, 1};
+
+/// Warp, weft and named yarns; told apart by people who see colours differently (Okabe & Ito 2008).
+constexpr std::array<glm::vec3, 6> kColours{{{0.84f, 0.37f, 0.0f},
+                                             {0.0f, 0.45f, 0.70f},
+                                             {0.0f, 0.62f, 0.45f},
+                                             {0.80f, 0.47f, 0.65f},
+                                             {0.90f, 0.62f, 0.0f},
+                                             {0.34f, 0.71f, 0.91f}}};
+
+glm::vec3 colour_of(uint32_t kind) { return kColours[kind % kColours.size()]; }
+
+class ElementPicture {
+  public:
+    explicit ElementPicture(const Cloth& cloth)
+        : spacing_(1e4 / cloth.ends_per_cm, 1e4 / cloth.picks_per_cm),
+          element_(build_micro_element(cloth, {.max_turn_degrees = kTurnDegrees})),
+          tracer_(element_.fibres),
+          extent_(glm::min(element_.fibres.cell, double(kMostThreads) * spacing_)),
+          scale_(kWidth / std::max(extent_.x, extent_.y)) {}
+
+    Canvas draw() {
+        const int along_x = pixels(extent_.x), along_y = pixels(extent_.y);
+        const int thick = pixels(tracer_.z_max() - tracer_.z_min());
+        Canvas canvas(std::max(along_x, along_y), along_y + 2 * (kGap + thick), kBackground);
+        draw_top(canvas, along_x, along_y);
+        draw_cut(canvas, along_y + kGap, along_x, thick, 0);
+        draw_cut(canvas, along_y + 2 * kGap + thick, along_y, thick, 1);
+        return canvas;
+    }
+
+  private:
+    int pixels(double length) const {
+        return std::max(1, static_cast<int>(std::lround(scale_ * length)));
+    }
+
+    void draw_top(Canvas& canvas, int width, int height) const {
+        const glm::vec3 lamp = glm::normalize(glm::vec3(-0.5f, 0.6f, 1));
+        parallel_for(static_cast<size_t>(height), [&](size_t row) {
+            for (int x = 0; x < width; ++x) {
+                const glm::dvec3 above((x + 0.5) / scale_,
+                                       (height - 0.5 - static_cast<double>(row)) / scale_,
+                                       tracer_.z_max() + 1);
+                const kernel::FibreTracer::Entry entry =
+                    tracer_.enter(above, {0, 0, -1}, kernel::FibreTracer::kNone);
+                if (entry.flight != kernel::FibreTracer::Flight::enters)
+                    continue;
+                const kernel::FibreSegment& segment = tracer_.segments()[entry.point.segment];
+                const float light = std::max(0.0f, glm::dot(glm::vec3(entry.point.normal), lamp));
+                canvas.set(x, static_cast<int>(row),
+                           (0.25f + 0.75f * light) * colour_of(segment.kind));
+            }
+        });
+    }
+
+    /// A cut in the making: of each pixel the fibre whose axis is nearest, in its radii.
+    struct Cut {
+        int axis; ///< that runs to the right: 0 the weft, 1 the warp
+        int width, height;
+        std::vector<float> distance;
+        std::vector<uint32_t> kind;
+    };
+
+    /// The plane half a spacing from the origin across the other axis: `axis` 0 runs along the weft
+    /// through the first pick, 1 along the warp through the first end.
+    void draw_cut(Canvas& canvas, int top, int width, int height, int axis) const {
+        const size_t size = static_cast<size_t>(width) * height;
+        Cut cut{axis, width, height, std::vector<float>(size, 2), std::vector<uint32_t>(size)};
+        const glm::dvec2 cell = element_.fibres.cell;
+        for (const kernel::FibreSegment& segment : tracer_.segments())
+            for (int i = -1; i <= 1; ++i)
+                for (int j = -1; j <= 1; ++j)
+                    add_segment(segment, segment.start + glm::dvec3(i * cell.x, j * cell.y, 0),
+                                cut);
+        for (size_t i = 0; i < size; ++i)
+            if (cut.distance[i] <= 1)
+                canvas.set(static_cast<int>(i % width), top + static_cast<int>(i / width),
+                           (cut.distance[i] > 0.8f ? 0.6f : 1.0f) * colour_of(cut.kind[i]));
+    }
+
+    void add_segment(const kernel::FibreSegment& segment, const glm::dvec3& start, Cut& cut) const {
+        const int across = 1 - cut.axis;
+        const double plane = 0.5 * spacing_[across];
+        const glm::dvec3 end = start + segment.length * segment.direction;
+        const glm::dvec3 low = glm::min(start, end) - segment.radius;
+        const glm::dvec3 high = glm::max(start, end) + segment.radius;
+        if (low[across] > plane || high[across] < plane || high[cut.axis] < 0 ||
+            low[cut.axis] * scale_ > cut.width)
+            return;
+        const glm::ivec2 first(std::max(0.0, scale_ * low[cut.axis]),
+                               std::max(0.0, scale_ * (tracer_.z_max() - high.z)));
+        const glm::ivec2 last(std::min<double>(cut.width, scale_ * high[cut.axis] + 1),
+                              std::min<double>(cut.height, scale_ * (tracer_.z_max() - low.z) + 1));
+        for (int y = first.y; y < last.y; ++y)
+            for (int x = first.x; x < last.x; ++x) {
+                glm::dvec3 p(0, 0, tracer_.z_max() - (y + 0.5) / scale_);
+                p[cut.axis] = (x + 0.5) / scale_;
+                p[across] = plane;
+                const double along =
+                    std::clamp(glm::dot(p - start, segment.direction), 0.0, segment.length);
+                const float distance = static_cast<float>(
+                    glm::distance(p, start + along * segment.direction) / segment.radius);
+                const size_t pixel = static_cast<size_t>(y) * cut.width + x;
+                if (distance < cut.distance[pixel]) {
+                    cut.distance[pixel] = distance;
+                    cut.kind[pixel] = segment.kind;
+                }
+            }
+    }
+
+    glm::dvec2 spacing_; ///< of ends along x, of picks along y [µm]
+    MicroElement element_;
+    kernel::FibreTracer tracer_;
+    glm::dvec2 extent_; ///< what is shown [µm]
+    double scale_;      ///< pixels per µm
+};
+
+} // namespace
+
+Canvas element_picture(const Cloth& cloth) { return ElementPicture(cloth).draw(); }
+
+} // namespace rapport

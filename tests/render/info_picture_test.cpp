@@ -1,0 +1,96 @@
+#include "materials/table/bsdf_table.h"
+#include "tests/support/run_program.h"
+#include "tests/support/synthetic_tables.h"
+#include "tests/support/temporary_folder.h"
+
+#include <array>
+#include <cstdint>
+#include <gtest/gtest.h>
+#include <memory>
+#include <set>
+#include <stb/stb_image.h>
+
+namespace rapport {
+namespace {
+
+const std::string kScenes = RAPPORT_SOURCE_DIR "/scenes/";
+
+struct Png {
+    int width = 0, height = 0;
+    std::unique_ptr<uint8_t, void (*)(void*)> pixels{nullptr, stbi_image_free};
+
+    std::array<int, 3> at(int x, int y) const {
+        const uint8_t* p = pixels.get() + 3 * (y * width + x);
+        return {p[0], p[1], p[2]};
+    }
+    std::set<std::array<int, 3>> colours() const {
+        std::set<std::array<int, 3>> found;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                found.insert(at(x, y));
+        return found;
+    }
+};
+
+class InfoPicture : public testing::Test {
+  protected:
+    Png draw(const std::string& file) {
+        const std::string png = (folder_ / "picture.png").string();
+        const tests::ProgramRun run = tests::run_program({"info", file, "--picture", png});
+        EXPECT_EQ(run.status, 0) << run.err;
+        Png read;
+        int channels;
+        read.pixels.reset(stbi_load(png.c_str(), &read.width, &read.height, &channels, 3));
+        EXPECT_TRUE(read.pixels);
+        return read;
+    }
+    tests::TemporaryFolder folder_;
+};
+
+TEST_F(InfoPicture, ADraftIsItsDrawdown) {
+    const Png png = draw(kScenes + "drafts/satin5.wif");
+    ASSERT_EQ(png.width, png.height);
+    const int cell = png.width / 5;
+    int up = 0;
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 5; ++x)
+            up += png.at(x * cell + cell / 2, y * cell + cell / 2)[0] < 128;
+    EXPECT_EQ(up, 20); // warp-faced: the weft is on top once in each pick
+}
+
+TEST_F(InfoPicture, AClothIsItsFibres) {
+    const Png png = draw(kScenes + "cloths/quickstart.toml");
+    // 5 ends of 1/80 cm by 5 picks of 1/53 cm, and two cuts below.
+    EXPECT_EQ(png.width, 900);
+    EXPECT_GT(png.height, 900);
+    int warp = 0, weft = 0;
+    for (int y = 0; y < 900; ++y)
+        for (int x = 0; x < 900 * 53 / 80; ++x) {
+            const std::array<int, 3> p = png.at(x, y);
+            warp += p[0] > p[2] + 20;
+            weft += p[2] > p[0] + 20;
+        }
+    EXPECT_GT(warp, 2 * weft); // a satin's face
+    EXPECT_GT(weft, 0);
+}
+
+TEST_F(InfoPicture, ATableIsItsHemispheres) {
+    const std::string file = (folder_ / "table.bsdf").string();
+    write_table(tests::synthetic_table(tests::satin_intensity), file);
+    const Png png = draw(file);
+    EXPECT_GT(png.width, png.height);
+    EXPECT_GT(png.colours().size(), 100u);
+    EXPECT_EQ(png.at(0, 0), (std::array<int, 3>{255, 255, 255}));
+}
+
+TEST_F(InfoPicture, RefusesWhatItCannotDraw) {
+    for (const auto& [file, png] : {std::pair(kScenes + "quickstart.pbrt", folder_ / "a.png"),
+                                    {kScenes + "drafts/satin5.wif", folder_ / "a.gif"}}) {
+        const tests::ProgramRun run = tests::run_program({"info", file, "--picture", png.string()});
+        EXPECT_EQ(run.status, 2);
+        EXPECT_FALSE(std::filesystem::exists(png));
+    }
+}
+
+} // namespace
+} // namespace rapport
