@@ -46,8 +46,9 @@ inline void put_in(const BsdfTable& fine, BsdfTable& table) {
 
 inline Surface fibre_surface(const std::shared_ptr<const FibreSwatch>& swatch,
                              const glm::mat4& to_world = glm::mat4(1)) {
-    Surface made = surface(box(1e-6 * swatch->low(), 1e-6 * swatch->high()), diffuse(0));
-    transform(made.mesh, to_world);
+    TriangleMesh mesh = box(1e-6 * swatch->low(), 1e-6 * swatch->high());
+    transform(mesh, to_world);
+    Surface made = surface(std::move(mesh), diffuse(0));
     made.fibres.emplace(swatch, to_world);
     return made;
 }

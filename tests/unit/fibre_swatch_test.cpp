@@ -73,9 +73,10 @@ TEST(FibreSwatch, LooksTheSameAtEverySizeAndPlace) {
     const auto radiance = [&](const glm::mat4& to_world) {
         std::vector<Surface> surfaces;
         surfaces.push_back(tests::fibre_surface(fibres, to_world));
-        surfaces.push_back(tests::surface(tests::level_square(1e-3f, 2e-3f), tests::diffuse(0), 1));
-        transform(surfaces[1].mesh, to_world);
-        reverse_orientation(surfaces[1].mesh);
+        TriangleMesh lamp = tests::level_square(1e-3f, 2e-3f);
+        transform(lamp, to_world);
+        reverse_orientation(lamp);
+        surfaces.push_back(tests::surface(std::move(lamp), tests::diffuse(0), 1));
         Camera camera = tests::parallel_camera({5e-4f, 3e-4f, 1e-3f}, {}, 2e-4f, 8);
         const float scale = glm::length(glm::vec3(to_world[0]));
         camera.to_world = to_world * camera.to_world;

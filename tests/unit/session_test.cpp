@@ -157,9 +157,9 @@ TEST(Session, KeepsTheOldSceneUntilABrokenOneIsMended) {
     session.resize({64, 48});
     const Image before = next_picture(session, 4)->image;
     const std::string text = tests::read_bytes(files.scene());
-    tests::write_bytes(files.scene(), text + "Shape \"sphere\"\n");
+    tests::write_bytes(files.scene(), text + "Shape \"cone\"\n");
     tick_until(session, [&] { return !session.error().empty(); });
-    EXPECT_NE(session.error().find("sphere"), std::string::npos) << session.error();
+    EXPECT_NE(session.error().find("cone"), std::string::npos) << session.error();
     EXPECT_EQ(session.scene().surfaces().size(), 2u);
     std::string mended = text;
     mended.replace(mended.find("[0.5 0.5 0.6]"), 13, "[0.1 0.1 0.1]");
