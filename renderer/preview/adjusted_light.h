@@ -4,7 +4,8 @@
 
 namespace rapport {
 
-/// Another light without a place, which is prepared, dimmed by `scale` and turned by a rotation.
+/// Another light, which is prepared, dimmed by `scale` and, if it is infinitely far, turned by a
+/// rotation.
 class AdjustedLight final : public Light {
   public:
     AdjustedLight(std::shared_ptr<const Light> light, float scale, const glm::mat3& rotation)
@@ -26,6 +27,7 @@ class AdjustedLight final : public Light {
         return light_->escaped_pdf(inverse_ * direction);
     }
     bool is_delta() const override { return light_->is_delta(); }
+    bool has_place() const override { return light_->has_place(); }
     float power() const override { return scale_ * light_->power(); }
 
   private:

@@ -53,7 +53,7 @@ std::set<std::string> wearers(const Scene& scene) {
 LightKinds light_kinds(const Scene& scene) {
     LightKinds kinds;
     for (const auto& light : scene.lights())
-        (light->is_delta() ? kinds.sun : kinds.sky) = true;
+        (light->has_place() ? kinds.lamps : light->is_delta() ? kinds.sun : kinds.sky) = true;
     for (const Surface& surface : scene.surfaces())
         kinds.lamps |= surface.emission != Rgb(0);
     return kinds;
@@ -77,14 +77,17 @@ Scene dressed(const Scene& scene, const ClothChoices& choices, const LightSettin
         surface.material = made;
         surface.reflectance = nullptr;
     }
-    const glm::mat3 sky_turn = about(up, settings.sky_rotation);
-    const glm::mat3 sun_turn = about(up, settings.sun_rotation);
     std::vector<std::shared_ptr<Light>> lights;
-    for (const auto& light : scene.lights()) {
-        const bool sun = light->is_delta();
-        lights.push_back(std::make_shared<AdjustedLight>(light, sun ? settings.sun : settings.sky,
-                                                         sun ? sun_turn : sky_turn));
-    }
+    const auto add = [&](const std::shared_ptr<Light>& light, float scale, float rotation) {
+        lights.push_back(std::make_shared<AdjustedLight>(light, scale, about(up, rotation)));
+    };
+    for (const auto& light : scene.lights())
+        if (light->has_place())
+            add(light, settings.lamps, 0);
+        else if (light->is_delta())
+            add(light, settings.sun, settings.sun_rotation);
+        else
+            add(light, settings.sky, settings.sky_rotation);
     return Scene(scene, std::move(surfaces), std::move(lights));
 }
 

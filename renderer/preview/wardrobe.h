@@ -25,7 +25,7 @@ ClothChoices worn_cloths(const Scene& scene);
 std::set<std::string> wearers(const Scene& scene);
 
 /// Factors of radiance and rotations about the vertical in degrees, relative to the scene's own
-/// lights: those from all around, parallel ones, and surfaces that shine.
+/// lights: those from all around, parallel ones, and those that stand in the scene.
 struct LightSettings {
     float sky = 1, sky_rotation = 0;
     float sun = 1, sun_rotation = 0;

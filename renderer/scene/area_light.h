@@ -15,6 +15,7 @@ class AreaLight final : public Light {
 
     std::optional<LightSample> sample(const glm::vec3& from, const glm::vec2& u) const override;
     float power() const override;
+    bool has_place() const override { return true; }
 
     /// Radiance that leaves the surface along unit `direction` where its unit normal is `normal`.
     Rgb emitted(const glm::vec3& normal, const glm::vec3& direction) const;

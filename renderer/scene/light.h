@@ -44,6 +44,8 @@ class Light {
     virtual float power() const = 0;
     /// Whether it is seen from a single direction, which no path meets that is not aimed at it.
     virtual bool is_delta() const { return false; }
+    /// Whether it stands in the scene; else it is infinitely far.
+    virtual bool has_place() const { return false; }
 };
 
 struct LightContext {

@@ -22,6 +22,7 @@ class PointLight final : public Light {
 
     float power() const override { return static_cast<float>(4 * kPi) * luminance(intensity_); }
     bool is_delta() const override { return true; }
+    bool has_place() const override { return true; }
 
   private:
     glm::vec3 place_;

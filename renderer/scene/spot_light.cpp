@@ -40,6 +40,7 @@ class SpotLight final : public Light {
         return solid_angle * luminance(intensity_);
     }
     bool is_delta() const override { return true; }
+    bool has_place() const override { return true; }
 
   private:
     /// pbrt's: a smooth step (3t² − 2t³) in cosθ.
