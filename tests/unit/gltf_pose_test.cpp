@@ -108,7 +108,8 @@ TEST(GltfSkin, WeightsMixAndSeveralSetsCount) {
     attributes["JOINTS_1"] = file.add_array(other, kUnsignedShort, "VEC4");
     attributes["WEIGHTS_1"] = file.add_array(
         std::vector<float>{1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 0.5, 0, 0, 0}, kFloat, "VEC4");
-    for (const glm::vec3& p : read(file.glb()).parts.at(0).mesh.positions)
+    const GltfModel model = read(file.glb());
+    for (const glm::vec3& p : model.parts.at(0).mesh.positions)
         EXPECT_FLOAT_EQ(p.z, 1.5f); // half way between the joints, all of them
 }
 
