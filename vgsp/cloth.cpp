@@ -279,6 +279,16 @@ Cloth viscose_cloth(const std::filesystem::path& draft_path) {
     return parse_cloth(kViscose, draft_path, draft_path);
 }
 
+Cloth load_cloth(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    if (extension == ".wif")
+        return viscose_cloth(path);
+    if (extension == ".toml")
+        return read_cloth(path);
+    throw FileError(path.string(), "", "a cloth as .toml or .wif",
+                    extension.empty() ? "no extension" : extension);
+}
+
 std::vector<YarnKind> yarn_kinds(const Cloth& cloth) {
     std::vector<YarnKind> kinds;
     if (cloth.draft.warp_yarns.empty())

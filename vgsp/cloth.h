@@ -185,6 +185,9 @@ Cloth read_cloth(const std::filesystem::path& path,
 /// The built-in viscose cloth woven to `draft_path` (a bare `.wif` in place of a cloth).
 Cloth viscose_cloth(const std::filesystem::path& draft_path);
 
+/// A cloth `.toml`, or a bare `.wif` as viscose; FileError for another ending.
+Cloth load_cloth(const std::filesystem::path& path);
+
 struct YarnKind {
     std::string place; ///< in the file: "warp", "weft" or "yarn.NAME"
     const YarnSpec* yarn;

@@ -17,7 +17,8 @@ struct GoniophotometerSettings {
     double max_seconds = 0; ///< for the whole run; 0 = no bound
     int max_events = 4096;  ///< boundary events of a path before it counts as capped
     uint64_t seed = 0;
-    /// By which wanted colours are solved for: the standard error of an albedo is 0.5/√this at most.
+    /// By which wanted colours are solved for: the standard error of an albedo is 0.5/√this at
+    /// most.
     uint64_t colour_paths = 1 << 16;
     StopSignal stopped = nullptr; ///< asked before each batch of paths
 };

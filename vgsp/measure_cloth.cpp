@@ -40,10 +40,8 @@ class Dyer {
   private:
     double solved(size_t band, double albedo, const std::string& place) {
         const size_t group = disperses(undyed_) ? band : 0;
-        const ColourSolver& solver = solvers_
-                                         .try_emplace(group, tracer_, in_band(undyed_, group),
-                                                      settings_)
-                                         .first->second;
+        const ColourSolver& solver =
+            solvers_.try_emplace(group, tracer_, in_band(undyed_, group), settings_).first->second;
         const std::optional<double> absorption = solver.absorption_for(albedo);
         if (!absorption)
             throw FileError(cloth_.path.string(), place,

@@ -43,8 +43,8 @@ struct MicroElementOptions {
 };
 
 /// Builds the micro-element (the paper, section 3). FileError (at the cloth's path) where the
-/// cloth cannot exist: yarns too thick for the sett, fibres that do not fit their yarn. Throws Stopped
-/// when told to stop.
+/// cloth cannot exist: yarns too thick for the sett, fibres that do not fit their yarn. Throws
+/// Stopped when told to stop.
 MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& options = {});
 
 } // namespace rapport

@@ -103,18 +103,16 @@ BsdfTable BsdfTable::in_colourway(const std::string& name, const std::string& fi
     table.colourways.clear();
     if (name.empty())
         return table;
-    const auto found = colourways.find(name);
-    if (found == colourways.end()) {
-        std::vector<std::string> names;
-        for (const auto& [known, scattering] : colourways)
-            names.push_back(known);
-        throw FileError(file, "",
-                        names.empty() ? "no colourway's name, the cloth having none"
-                                      : fmt::format("a colourway: {}", fmt::join(names, ", ")),
-                        fmt::format("\"{}\"", name));
-    }
-    static_cast<Scattering&>(table) = found->second;
+    static_cast<Scattering&>(table) = colourway(colourways, name, file);
     return table;
+}
+
+void refuse_colourway(const std::string& name, const std::vector<std::string>& names,
+                      const std::string& file) {
+    throw FileError(file, "",
+                    names.empty() ? "no colourway's name, the cloth having none"
+                                  : fmt::format("a colourway: {}", fmt::join(names, ", ")),
+                    fmt::format("\"{}\"", name));
 }
 
 BsdfTable make_full_table(const Bands& bands, bool front, bool back) {

@@ -115,4 +115,22 @@ BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> 
 void write_table(const BsdfTable& table, const std::filesystem::path& path);
 BsdfTable read_table(const std::filesystem::path& path);
 
+/// FileError for a colourway that `file` has not, told those that it has.
+[[noreturn]] void refuse_colourway(const std::string& name, const std::vector<std::string>& names,
+                                   const std::string& file);
+
+/// What belongs to the colourway `name` of a cloth; refused where there is none. The empty name, of
+/// the cloth's own dyes, may be among them.
+template <class T>
+const T& colourway(const std::map<std::string, T>& colourways, const std::string& name,
+                   const std::string& file) {
+    if (const auto found = colourways.find(name); found != colourways.end())
+        return found->second;
+    std::vector<std::string> names;
+    for (const auto& [known, value] : colourways)
+        if (!known.empty())
+            names.push_back(known);
+    refuse_colourway(name, names, file);
+}
+
 } // namespace rapport

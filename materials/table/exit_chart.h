@@ -25,8 +25,8 @@ template <class T> struct ChartPoint { T u, v; };
 /// T = double (the goniophotometer), or float (looking up; angles by polynomials within 2e-6).
 template <class T> class ExitChart {
   public:
-    /// How far from the middle a mirror direction may lie, in y and in quarter turns of ψ, to become
-    /// the origin; nearer to the horizon the origin stays here.
+    /// How far from the middle a mirror direction may lie, in y and in quarter turns of ψ, to
+    /// become the origin; nearer to the horizon the origin stays here.
     static constexpr double kFarthest = 0.97;
 
     /// For light from (or an eye at) the unit vector `towards`; the sign of z does not matter.

@@ -11,9 +11,10 @@ namespace rapport {
 ///
 /// What is kept of a bin is its flux per area of the chart, in which the blend of the four nodes
 /// about a direction of incidence is one bin at one place: the square root of each channel in 16
-/// bits of the node's largest, and the slopes of its plane in 8 bits, 8 bytes in all. Bins of the same number of all nodes of a side lie together, so that a
-/// look-up reads two or three cache lines. Everything else (albedo, the distributions sampled) is
-/// computed from what is kept, so that rounding makes no sample heavier than another.
+/// bits of the node's largest, and the slopes of its plane in 8 bits, 8 bytes in all. Bins of the
+/// same number of all nodes of a side lie together, so that a look-up reads two or three cache
+/// lines. Everything else (albedo, the distributions sampled) is computed from what is kept, so
+/// that rounding makes no sample heavier than another.
 class PackedTable {
   public:
     /// Of a table whose grid is whole on both sides. Bands become linear RGB.

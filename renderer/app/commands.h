@@ -26,7 +26,4 @@ void add_export_command(CLI::App& app);
 /// True when standard error is a terminal and progress is wanted.
 bool shows_progress(const CommonOptions& common);
 
-/// ".bsdf", in lower case.
-std::string lower_extension(const std::filesystem::path& path);
-
 } // namespace rapport

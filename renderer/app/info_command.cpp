@@ -2,6 +2,7 @@
 #include "renderer/app/info.h"
 #include "renderer/app/info_picture.h"
 #include "renderer/core/error.h"
+#include "renderer/core/input_file.h"
 
 #include <fmt/format.h>
 #include <functional>

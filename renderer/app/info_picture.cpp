@@ -5,6 +5,7 @@
 #include "renderer/app/commands.h"
 #include "renderer/app/element_picture.h"
 #include "renderer/core/error.h"
+#include "renderer/core/input_file.h"
 #include "vgsp/cloth.h"
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #include "renderer/core/parallel.h"
 
 #include <algorithm>
-#include <cctype>
 #include <exception>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,13 +16,6 @@ namespace rapport {
 
 bool shows_progress(const CommonOptions& common) {
     return !common.quiet && isatty(STDERR_FILENO) != 0;
-}
-
-std::string lower_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return std::tolower(c); });
-    return extension;
 }
 
 namespace {

@@ -1,4 +1,5 @@
 #include "renderer/app/scene_options.h"
+#include "renderer/core/input_file.h"
 #include "renderer/core/progress.h"
 #include "renderer/integrator/path_tracer.h"
 #include "renderer/integrator/streaks.h"

@@ -4,6 +4,7 @@
 #include "renderer/app/scan_files.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/input_file.h"
 #include "renderer/core/progress.h"
 #include "vgsp/measure_cloth.h"
 

@@ -1,4 +1,5 @@
 #include "renderer/app/scene_options.h"
+#include "renderer/core/input_file.h"
 #include "renderer/preview/view.h"
 
 #include <fmt/format.h>

@@ -2,6 +2,8 @@
 
 #include "renderer/core/error.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <system_error>
 
@@ -27,6 +29,13 @@ InputFile open_input(const std::filesystem::path& path) {
     if (error)
         throw FileError(path.string(), "", "a readable file", error.message());
     return file;
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return std::tolower(c); });
+    return extension;
 }
 
 } // namespace rapport

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 namespace rapport {
 
@@ -14,5 +15,8 @@ struct InputFile {
 
 /// A file that is missing, unreadable, or no plain file (a folder, a device) is a FileError.
 InputFile open_input(const std::filesystem::path& path);
+
+/// ".bsdf", in lower case.
+std::string lower_extension(const std::filesystem::path& path);
 
 } // namespace rapport

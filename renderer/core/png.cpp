@@ -1,6 +1,6 @@
+#include "renderer/core/png.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/image.h"
-#include "renderer/core/png.h"
 #include "renderer/core/srgb.h"
 
 #include <array>

@@ -1,6 +1,6 @@
 #include "renderer/preview/cloth_worker.h"
 
-#include "renderer/core/error.h"
+#include "renderer/core/input_file.h"
 
 #include <algorithm>
 #include <utility>
@@ -11,14 +11,10 @@ namespace {
 constexpr double kFinestAccuracy = 0.1;
 constexpr uint64_t kMostPaths = 1 << 20; ///< per direction, for cloths whose light is hard to count
 
-bool is_stored(const std::filesystem::path& file) { return file.extension() == ".bsdf"; }
+bool is_stored(const std::filesystem::path& file) { return lower_extension(file) == ".bsdf"; }
 
 std::shared_ptr<const Cloth> read(const std::filesystem::path& file) {
-    if (file.extension() == ".wif")
-        return std::make_shared<const Cloth>(viscose_cloth(file));
-    if (file.extension() != ".toml")
-        throw FileError(file.string(), "", "a cloth as .bsdf, .toml or .wif", "another ending");
-    return std::make_shared<const Cloth>(read_cloth(file));
+    return std::make_shared<const Cloth>(load_cloth(file));
 }
 
 /// `name` is for messages.

@@ -1,10 +1,7 @@
 #include "renderer/preview/scene_source.h"
 
-#include "renderer/core/error.h"
 #include "renderer/scene/scene_builder.h"
 #include "renderer/scene/scene_file.h"
-
-#include <fmt/format.h>
 
 namespace rapport {
 
@@ -29,11 +26,7 @@ LoadedScene load_scene(const SceneSource& source, const ClothTables& known) {
 std::shared_ptr<const TableBsdf> in_colourway(const ClothTable& table,
                                               const std::filesystem::path& file,
                                               const std::string& colourway) {
-    const auto found = table.dyed.find(colourway);
-    if (found == table.dyed.end())
-        throw FileError(file.string(), "", "the name of a colourway of this cloth",
-                        fmt::format("\"{}\"", colourway));
-    return found->second;
+    return rapport::colourway(table.dyed, colourway, file.string());
 }
 
 } // namespace rapport

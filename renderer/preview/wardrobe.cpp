@@ -18,8 +18,7 @@ std::shared_ptr<const Bsdf> cloth(const std::string& name, const ClothChoice& ch
 }
 
 bool can_be_dressed(const Surface& surface) {
-    return surface.description && !surface.description->name.empty() && !surface.fibres &&
-           !surface.mesh->uvs.empty();
+    return surface.description && !surface.description->name.empty() && !surface.mesh->uvs.empty();
 }
 
 glm::mat3 about(const glm::vec3& axis, float angle_degrees) {
@@ -45,7 +44,7 @@ ClothChoices worn_cloths(const Scene& scene) {
 std::set<std::string> wearers(const Scene& scene) {
     std::set<std::string> names;
     for (const Surface& surface : scene.surfaces())
-        if (surface.description && !surface.description->name.empty() && !surface.mesh->uvs.empty())
+        if (can_be_dressed(surface))
             names.insert(surface.description->name);
     return names;
 }

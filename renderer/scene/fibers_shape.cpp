@@ -30,9 +30,9 @@ std::vector<ShapePart> make_fibers(const ShapeContext& context) {
     if (seed < 0)
         params.fail("seed", "a number from 0", std::to_string(seed));
 
-    const Cloth cloth = path.extension() == ".wif" ? viscose_cloth(path) : read_cloth(path);
-    const auto swatch = std::make_shared<const FibreSwatch>(
-        cloth, 1e6 * glm::dvec2(width, height), params.get_string("colourway", ""), seed);
+    const auto swatch =
+        std::make_shared<const FibreSwatch>(load_cloth(path), 1e6 * glm::dvec2(width, height),
+                                            params.get_string("colourway", ""), seed);
     return {{box(1e-6 * swatch->low(), 1e-6 * swatch->high()), "", {}, swatch}};
 }
 

@@ -1,10 +1,7 @@
 #include "renderer/scene/fibre_swatch.h"
 
-#include "renderer/core/error.h"
 #include "vgsp/measure_cloth.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <limits>
 
 namespace rapport {
@@ -16,18 +13,9 @@ std::vector<FibreOptics> dyed_optics(const Cloth& cloth, const kernel::FibreTrac
     ClothOptics optics = cloth_optics(cloth, tracer, {.seed = seed});
     if (colourway.empty())
         return optics.fibres;
-    const auto found = optics.colourways.find(colourway);
-    if (found == optics.colourways.end()) {
-        std::vector<std::string> names;
-        for (const auto& [name, dyes] : optics.colourways)
-            names.push_back(name);
-        throw FileError(cloth.path.string(), "",
-                        names.empty() ? "no colourway's name, the cloth having none"
-                                      : fmt::format("a colourway: {}", fmt::join(names, ", ")),
-                        fmt::format("\"{}\"", colourway));
-    }
+    const auto& dyes = rapport::colourway(optics.colourways, colourway, cloth.path.string());
     for (size_t kind = 0; kind < optics.fibres.size(); ++kind)
-        optics.fibres[kind].absorption_per_um = found->second[kind];
+        optics.fibres[kind].absorption_per_um = dyes[kind];
     return optics.fibres;
 }
 
@@ -41,7 +29,7 @@ struct FibreSwatch::Exit {
 
 FibreSwatch::FibreSwatch(const Cloth& cloth, const glm::dvec2& size, const std::string& colourway,
                          uint64_t seed)
-    : element_(build_micro_element(cloth, {.seed = seed})), tracer_(element_.fibres),
+    : tracer_(build_micro_element(cloth, {.seed = seed}).fibres),
       low_(-0.5 * size, tracer_.z_min()), high_(0.5 * size, tracer_.z_max()),
       media_(media_of_groups(dyed_optics(cloth, tracer_, colourway, seed), cloth.bands.count(),
                              tracer_)),
@@ -84,20 +72,17 @@ std::optional<FibreSwatch::Passage> FibreSwatch::follow(const glm::dvec3& positi
         const glm::dvec3 along = path.light.direction;
         const bool scattered = path.light.events > 0;
         const std::optional<PathFate> fate = tracer.step(path, rng);
-        const Exit exit = this->exit(from, along);
         const bool left = fate == PathFate::scattered || fate == PathFate::unscattered;
-        const double step = glm::dot(position + path.light.travelled - from, along);
-        if (!left && !(step > exit.distance)) {
-            if (fate)
-                return std::nullopt;
+        if (fate && !left)
+            return std::nullopt;
+        if (!left && over_cloth(position + path.light.travelled))
             continue;
-        }
         optical_depths(path.light, media_[group], path.optical_depth);
         Rgb weight(0);
         for (size_t channel = 0; channel < channels; ++channel)
             weight += static_cast<float>(groups * path.weight(channel)) *
                       band_rgb_[group * channels + channel];
-        return passage(from, along, exit, weight, scattered);
+        return passage(from, along, exit(from, along), weight, scattered);
     }
 }
 

@@ -3,7 +3,6 @@
 #include "renderer/core/bands.h"
 #include "vgsp/cloth.h"
 #include "vgsp/incident_path.h"
-#include "vgsp/micro_element.h"
 
 #include <optional>
 
@@ -45,11 +44,14 @@ class FibreSwatch {
     Exit exit(const glm::dvec3& position, const glm::dvec3& direction) const;
     Passage passage(const glm::dvec3& position, const glm::dvec3& direction, const Exit& exit,
                     const Rgb& weight, bool scattered) const;
+    bool over_cloth(const glm::dvec3& position) const {
+        return position.x >= low_.x && position.x <= high_.x && position.y >= low_.y &&
+               position.y <= high_.y;
+    }
     glm::dvec3 in_cloth(const glm::dvec3& position) const {
         return {position.x - low_.x, position.y - low_.y, position.z};
     }
 
-    MicroElement element_;
     kernel::FibreTracer tracer_;
     glm::dvec3 low_, high_;
     std::vector<std::vector<FibreMedium>> media_; ///< of each group of bands that share paths

@@ -12,8 +12,8 @@ namespace rapport {
 namespace {
 
 constexpr int kHighestLevel = 64;
-/// Where facets make about the error that 64 samples a pixel leave as noise in a picture of 512², and
-/// less in larger ones (tests/bench/charts/tessellation.svg) [pixels].
+/// Where facets make about the error that 64 samples a pixel leave as noise in a picture of 512²,
+/// and less in larger ones (tests/bench/charts/tessellation.svg) [pixels].
 constexpr float kDefaultEdgeLength = 4;
 /// Into how many pieces an edge is cut at most, also right before the camera.
 constexpr int kHighestRate = 256;

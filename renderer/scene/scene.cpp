@@ -47,11 +47,10 @@ Scene::Scene(const Scene& scene, std::vector<Surface> surfaces,
 /// Makes the surfaces shine that do, and works out how lights are chosen.
 void Scene::light_up() {
     for (Surface& surface : surfaces_)
-        surface.area_light =
-            surface.emission == Rgb(0)
-                ? nullptr
-                : std::make_shared<const AreaLight>(*surface.mesh, surface.emission,
-                                                    surface.two_sided_emission);
+        surface.area_light = surface.emission == Rgb(0)
+                                 ? nullptr
+                                 : std::make_shared<const AreaLight>(
+                                       *surface.mesh, surface.emission, surface.two_sided_emission);
     std::vector<const Light*> all;
     for (const auto& light : lights_)
         all.push_back(light.get());

@@ -1,19 +1,14 @@
 #include "renderer/scene/scene_file.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/input_file.h"
 #include "renderer/scene/model_scene.h"
 #include "renderer/scene/pbrt_parser.h"
 
-#include <algorithm>
-#include <cctype>
-
 namespace rapport {
 
-SceneDescription read_scene(const std::filesystem::path& path,
-                            const glm::ivec2& model_resolution) {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return std::tolower(c); });
+SceneDescription read_scene(const std::filesystem::path& path, const glm::ivec2& model_resolution) {
+    const std::string extension = lower_extension(path);
     if (extension == ".gltf" || extension == ".glb")
         return describe_model(path, model_resolution);
     if (extension == ".pbrt")

@@ -1,10 +1,7 @@
 #include "renderer/scene/table_loader.h"
 
-#include "renderer/core/error.h"
+#include "renderer/core/input_file.h"
 #include "vgsp/measure_cloth.h"
-
-#include <algorithm>
-#include <cctype>
 
 namespace rapport {
 
@@ -24,23 +21,15 @@ std::shared_ptr<const BsdfTable> TableLoader::all_colourways(const std::filesyst
     auto& table = tables_[std::filesystem::weakly_canonical(path)];
     if (table)
         return table;
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return std::tolower(c); });
-    const bool stored = extension == ".bsdf";
-    table = std::make_shared<const BsdfTable>(stored ? read_table(path)
-                                                     : measure_file(path, extension));
+    const bool stored = lower_extension(path) == ".bsdf";
+    table = std::make_shared<const BsdfTable>(stored ? read_table(path) : measure_file(path));
     if (!stored)
         measured_[path] = table;
     return table;
 }
 
-BsdfTable TableLoader::measure_file(const std::filesystem::path& path,
-                                    const std::string& extension) const {
-    if (extension != ".toml" && extension != ".wif")
-        throw FileError(path.string(), "", "a cloth as .bsdf, .toml or .wif",
-                        extension.empty() ? "no extension" : extension);
-    const Cloth cloth = extension == ".toml" ? read_cloth(path) : viscose_cloth(path);
+BsdfTable TableLoader::measure_file(const std::filesystem::path& path) const {
+    const Cloth cloth = load_cloth(path);
     MeasureOptions options;
     options.goniophotometer.accuracy = accuracy_;
     options.goniophotometer.seed = seed_;

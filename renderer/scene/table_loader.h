@@ -33,7 +33,7 @@ class TableLoader {
 
   private:
     std::shared_ptr<const BsdfTable> all_colourways(const std::filesystem::path& path);
-    BsdfTable measure_file(const std::filesystem::path& path, const std::string& extension) const;
+    BsdfTable measure_file(const std::filesystem::path& path) const;
 
     double accuracy_;
     uint64_t seed_;

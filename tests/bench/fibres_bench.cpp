@@ -49,20 +49,12 @@ void far_view(benchmark::State& state, Surface (*make_swatch)(), int samples) {
     state.counters["seconds_to_1_percent"] = seconds * relative_variance / square(0.01);
 }
 
-BENCHMARK_CAPTURE(far_view, fibres, as_fibres, 4000)
-    ->Arg(2)
-    ->Arg(5)
-    ->Arg(15)
-    ->Arg(40)
-    ->Iterations(1)
-    ->Unit(benchmark::kSecond);
-BENCHMARK_CAPTURE(far_view, table, as_table, 4000)
-    ->Arg(2)
-    ->Arg(5)
-    ->Arg(15)
-    ->Arg(40)
-    ->Iterations(1)
-    ->Unit(benchmark::kSecond);
+void half_angles(benchmark::internal::Benchmark* bench) {
+    for (const int degrees : {2, 5, 15, 40})
+        bench->Arg(degrees)->Iterations(1)->Unit(benchmark::kSecond);
+}
+BENCHMARK_CAPTURE(far_view, fibres, as_fibres, 4000)->Apply(half_angles);
+BENCHMARK_CAPTURE(far_view, table, as_table, 4000)->Apply(half_angles);
 
 } // namespace
 } // namespace rapport

@@ -114,8 +114,7 @@ TEST(SpecialBeam, InThePlaneThatDividesBins) {
         for (const int block : {0, 1}) {
             double beside = 0, total = 0;
             for (size_t bin = 0; bin < mesh.bins(); ++bin) {
-                const double flux =
-                    table.at(d, block, bin, 0) * table.exits_of(d).solid_angle(bin);
+                const double flux = table.at(d, block, bin, 0) * table.exits_of(d).solid_angle(bin);
                 const DirectionMesh::Bounds bounds = mesh.bounds(bin);
                 total += flux;
                 beside += bounds.u_low == 0 || bounds.u_high == 0 ? flux : 0;

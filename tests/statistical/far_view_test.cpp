@@ -16,12 +16,9 @@ using tests::kDegree;
 
 /// A shipped cloth in dyes that need not be solved for.
 Cloth dyed_cloth(const std::string& name) {
-    Cloth cloth = read_cloth(RAPPORT_SOURCE_DIR "/scenes/cloths/" + name + ".toml");
-    for (FibreSpec* fibre : {&cloth.warp.fibre, &cloth.weft.fibre}) {
-        fibre->color.reset();
+    Cloth cloth = tests::clear_cloth(name);
+    for (FibreSpec* fibre : {&cloth.warp.fibre, &cloth.weft.fibre})
         fibre->absorption_per_um = {0.01, 0.001, 0};
-    }
-    cloth.colourways.clear();
     return cloth;
 }
 

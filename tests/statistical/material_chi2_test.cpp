@@ -71,16 +71,23 @@ std::vector<Case> cases() {
     return all;
 }
 
-/// Integral over each cell of the sphere (equal in cosθ and φ) of f, by midpoints.
+/// Integral over each cell of the sphere (equal in cosθ and φ) of f, by midpoints: many more of
+/// them next to the horizon, where what a grazing eye sees is as narrow as its own cosine.
 template <class F> std::vector<double> integrate_cells(const F& f) {
     std::vector<double> cells(kCells);
-    const int cosines = kCosines * kSubdivisions, phis = kPhis * kSubdivisions;
-    for (int i = 0; i < cosines; ++i)
-        for (int j = 0; j < phis; ++j) {
-            const double cosine = 2 * (i + 0.5) / cosines - 1;
-            const glm::vec3 w(spherical_direction(std::acos(cosine), 2 * kPi * (j + 0.5) / phis));
-            cells[i / kSubdivisions * kPhis + j / kSubdivisions] += f(w) * 4 * kPi / cosines / phis;
-        }
+    const int phis = kPhis * kSubdivisions;
+    for (int row = 0; row < kCosines; ++row) {
+        const bool grazing = row == kCosines / 2 - 1 || row == kCosines / 2;
+        const int cosines = grazing ? 16 * kSubdivisions : kSubdivisions;
+        for (int i = 0; i < cosines; ++i)
+            for (int j = 0; j < phis; ++j) {
+                const double cosine = 2 * (row + (i + 0.5) / cosines) / kCosines - 1;
+                const glm::vec3 w(
+                    spherical_direction(std::acos(cosine), 2 * kPi * (j + 0.5) / phis));
+                cells[row * kPhis + j / kSubdivisions] +=
+                    f(w) * 4 * kPi / (static_cast<double>(kCosines) * cosines * phis);
+            }
+    }
     return cells;
 }
 

@@ -100,7 +100,8 @@ TEST(BinError, OfAnEvenIntensityIsNothing) {
     const BsdfTable table = one_direction();
     const PathTally sums = tally(table, {lobe(table, 0, 0)}, 100'000, 1);
     EXPECT_LT(sums.bin_error(), sums.accuracy());
-    EXPECT_NEAR(sums.accuracy(), std::sqrt(2.0 * table.exits.bins() / 0.8 / 100'000), 0.01 * sums.accuracy());
+    EXPECT_NEAR(sums.accuracy(), std::sqrt(2.0 * table.exits.bins() / 0.8 / 100'000),
+                0.01 * sums.accuracy());
 }
 
 /// Realisations that lean to one side or the other, by ±0.3: each intensity is 1 ± 0.3·cosφ times

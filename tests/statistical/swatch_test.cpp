@@ -20,18 +20,8 @@ namespace {
 using tests::Estimate;
 using tests::kDegree;
 
-Cloth white_plain() {
-    Cloth cloth = read_cloth(RAPPORT_SOURCE_DIR "/scenes/cloths/viscose-plain.toml");
-    for (FibreSpec* fibre : {&cloth.warp.fibre, &cloth.weft.fibre}) {
-        fibre->color.reset();
-        fibre->absorption_per_um.reset();
-        fibre->surface_absorption = 0;
-    }
-    return cloth;
-}
-
 struct Fibres {
-    MicroElement element = build_micro_element(white_plain());
+    MicroElement element = build_micro_element(tests::clear_cloth("viscose-plain"));
     kernel::FibreTracer tracer{element.fibres};
     std::vector<FibreOptics> optics{{1.526, {0, 0, 0}, 0}, {1.526, {0, 0, 0}, 0}};
 };

@@ -28,17 +28,21 @@ inline std::shared_ptr<const Bsdf> diffuse(float reflectance) {
     return make_material("diffuse", {params, "", {}});
 }
 
-/// A cloth whose table scatters by `intensity` and lets `unscattered` pass.
-inline std::shared_ptr<const Bsdf> cloth(const Intensity& intensity, double unscattered) {
+/// A cloth by its table.
+inline std::shared_ptr<const Bsdf> cloth_of(std::shared_ptr<const TableBsdf> table) {
     Params params("test", "cloth", 1);
     Param file;
     file.type = "string";
     file.name = "filename";
-    file.strings = {"synthetic.bsdf"};
+    file.strings = {"swatch.bsdf"};
     params.add(file);
-    const auto table = std::make_shared<const TableBsdf>(synthetic_table(intensity, unscattered),
-                                                         "synthetic.bsdf");
     return make_material("cloth", {params, "", [&](const auto&, const auto&) { return table; }});
+}
+
+/// A cloth whose table scatters by `intensity` and lets `unscattered` pass.
+inline std::shared_ptr<const Bsdf> cloth(const Intensity& intensity, double unscattered) {
+    return cloth_of(std::make_shared<const TableBsdf>(synthetic_table(intensity, unscattered),
+                                                      "synthetic.bsdf"));
 }
 /// Half of the light passes, the other half is absorbed.
 inline std::shared_ptr<const Bsdf> half_open_cloth() {

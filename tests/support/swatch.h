@@ -44,6 +44,18 @@ inline void put_in(const BsdfTable& fine, BsdfTable& table) {
             }
 }
 
+/// A shipped cloth of clear fibres: nothing but the cap on events takes light away.
+inline Cloth clear_cloth(const std::string& name) {
+    Cloth cloth = read_cloth(RAPPORT_SOURCE_DIR "/scenes/cloths/" + name + ".toml");
+    for (FibreSpec* fibre : {&cloth.warp.fibre, &cloth.weft.fibre}) {
+        fibre->color.reset();
+        fibre->absorption_per_um.reset();
+        fibre->surface_absorption = 0;
+    }
+    cloth.colourways.clear();
+    return cloth;
+}
+
 inline Surface fibre_surface(const std::shared_ptr<const FibreSwatch>& swatch,
                              const glm::mat4& to_world = glm::mat4(1)) {
     TriangleMesh mesh = box(1e-6 * swatch->low(), 1e-6 * swatch->high());
@@ -51,16 +63,6 @@ inline Surface fibre_surface(const std::shared_ptr<const FibreSwatch>& swatch,
     Surface made = surface(std::move(mesh), diffuse(0));
     made.fibres.emplace(swatch, to_world);
     return made;
-}
-
-inline std::shared_ptr<const Bsdf> cloth_of(std::shared_ptr<const TableBsdf> table) {
-    Params params("test", "cloth", 1);
-    Param file;
-    file.type = "string";
-    file.name = "filename";
-    file.strings = {"swatch.bsdf"};
-    params.add(file);
-    return make_material("cloth", {params, "", [&](const auto&, const auto&) { return table; }});
 }
 
 struct Estimate {

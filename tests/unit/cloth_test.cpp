@@ -3,9 +3,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/math.h"
 #include "renderer/core/rng.h"
-#include "tests/support/file_bytes.h"
-#include "tests/support/temporary_folder.h"
-#include "vgsp/micro_element.h"
+#include "tests/support/cloth_texts.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -14,36 +12,9 @@ namespace rapport {
 namespace {
 
 using Rows = std::vector<std::string>;
-
-constexpr std::string_view kCloth = R"(name = "test cloth"
-weave = "twill 2/1 Z"
-crimp_balance = 0.25
-
-[warp]
-ends_per_cm = 40
-section = "parallel"
-fibres = 37
-width_um = 130.5
-height_um = 90
-flatten = 0.8
-[warp.fibre]
-diameter_um = 11.9
-refractive_index = 1.526
-absorption_per_um = [0.001, 0.002, 0.003]
-
-[weft]
-picks_per_cm = 30
-section = "twisted"
-fibres = 61
-diameter_um = 150
-twist_per_m = -700
-[weft.fibre]
-diameter_um = 12
-refractive_index = 1.55
-color = [0.5, 0.25, 0]
-surface_absorption = 0.01
-roughness = 0.2
-)";
+using tests::kCloth;
+using tests::read_text;
+using tests::refusal;
 
 /// kCloth with its only `old_words` replaced.
 std::string with(std::string_view old_words, std::string_view new_words) {
@@ -52,28 +23,6 @@ std::string with(std::string_view old_words, std::string_view new_words) {
     EXPECT_NE(place, std::string::npos) << old_words;
     EXPECT_EQ(text.find(old_words, place + 1), std::string::npos) << old_words;
     return text.replace(place, old_words.size(), new_words);
-}
-
-std::filesystem::path write(const tests::TemporaryFolder& folder, const std::string& name,
-                            std::string_view text) {
-    const std::filesystem::path file = folder / name;
-    tests::write_bytes(file, std::string(text));
-    return file;
-}
-
-Cloth read_text(std::string_view text) {
-    const tests::TemporaryFolder folder;
-    return read_cloth(write(folder, "cloth.toml", text));
-}
-
-FileError refusal(std::string_view text) {
-    try {
-        read_text(text);
-    } catch (const FileError& error) {
-        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-        return error;
-    }
-    return FileError("", "", "", "accepted");
 }
 
 constexpr std::string_view kPlainWif =
@@ -148,7 +97,7 @@ TEST(Cloth, DefaultsAreThoseOfTheTable) {
     std::string text = with("name = \"test cloth\"\n", "");
     const size_t balance = text.find("crimp_balance");
     text.erase(balance, text.find('\n', balance) - balance);
-    const Cloth cloth = read_cloth(write(folder, "linen.toml", text));
+    const Cloth cloth = read_cloth(tests::write_bytes(folder, "linen.toml", text));
     EXPECT_EQ(cloth.name, "linen");
     EXPECT_EQ(cloth.crimp_balance, 0.5);
     EXPECT_EQ(cloth.weft.flatten, 1);
@@ -213,19 +162,20 @@ TEST(Cloth, DraftComesFromAFileANameOrRows) {
 
     const tests::TemporaryFolder folder;
     std::filesystem::create_directory(folder.path() / "drafts");
-    const auto wif = write(folder, "drafts/plain.wif", kPlainWif);
+    const auto wif = tests::write_bytes(folder, "drafts/plain.wif", kPlainWif);
     const std::string text = with("weave = \"twill 2/1 Z\"", "draft = 'drafts/plain.wif'");
-    const Cloth cloth = read_cloth(write(folder, "cloth.toml", text));
+    const Cloth cloth = read_cloth(tests::write_bytes(folder, "cloth.toml", text));
     EXPECT_EQ(draft_rows(cloth.draft), (Rows{"100", "010"})); // as drawn; end 3 is on no shaft
     EXPECT_EQ(cloth.draft.warnings.size(), 2u);               // on reading, and on weaving
     EXPECT_NE(cloth.source.find("rows = [ '10', '01' ]"), std::string::npos) << cloth.source;
     EXPECT_EQ(cloth.source.find("plain.wif"), std::string::npos);
 
-    const Cloth other = read_cloth(write(folder, "cloth.toml", kCloth), wif);
+    const Cloth other = read_cloth(tests::write_bytes(folder, "cloth.toml", kCloth), wif);
     EXPECT_EQ(other.source, cloth.source);
     // A draft that is replaced is not looked for.
     const std::string absent = with("weave = \"twill 2/1 Z\"", "draft = 'absent.wif'");
-    EXPECT_EQ(read_cloth(write(folder, "cloth.toml", absent), wif).source, cloth.source);
+    EXPECT_EQ(read_cloth(tests::write_bytes(folder, "cloth.toml", absent), wif).source,
+              cloth.source);
 }
 
 TEST(Cloth, SourceReadsBackAsTheSameCloth) {
@@ -265,140 +215,6 @@ TEST(Cloth, SourceFollowsWhatDecidesTheCloth) {
                                      {"0.01\n", "0.02\n"},
                                      {"11.9", "11.8"}})
         EXPECT_NE(read_text(with(key, other)).source, source) << key;
-}
-
-/// Two yarns in the warp, one of them in the weft too.
-constexpr std::string_view kStriped = R"(weave = "plain"
-[warp]
-ends_per_cm = 40
-order = ["red", "red", "white"]
-[weft]
-picks_per_cm = 30
-order = ["white"]
-[yarn.red]
-section = "parallel"
-fibres = 19
-width_um = 110
-height_um = 110
-[yarn.red.fibre]
-diameter_um = 14
-refractive_index = 1.5
-[yarn.white]
-section = "parallel"
-fibres = 7
-width_um = 90
-height_um = 80
-[yarn.white.fibre]
-diameter_um = 12
-refractive_index = 1.53
-[yarn.spare]
-section = "parallel"
-fibres = 1
-width_um = 90
-height_um = 90
-[yarn.spare.fibre]
-diameter_um = 50
-refractive_index = 1.53
-)";
-
-std::string striped(std::string_view old_words, std::string_view new_words) {
-    std::string text(kStriped);
-    const size_t place = text.find(old_words);
-    EXPECT_NE(place, std::string::npos) << old_words;
-    return text.replace(place, old_words.size(), new_words);
-}
-
-TEST(YarnOrder, GivesEachThreadItsYarn) {
-    const Cloth cloth = read_text(kStriped);
-    ASSERT_EQ(cloth.yarns.size(), 2u); // one is spare
-    EXPECT_EQ(cloth.yarns[0].name, "red");
-    EXPECT_EQ(cloth.yarns[1].yarn.fibres, 7);
-    EXPECT_EQ(cloth.draft.ends, 6); // an even repeat of three
-    EXPECT_EQ(cloth.draft.warp_yarns, (std::vector<int>{0, 0, 1, 0, 0, 1}));
-    EXPECT_EQ(cloth.draft.weft_yarns, (std::vector<int>{1, 1}));
-    EXPECT_EQ(draft_rows(cloth.draft), (Rows{"101010", "010101"}));
-    const std::vector<YarnKind> kinds = yarn_kinds(cloth);
-    ASSERT_EQ(kinds.size(), 2u);
-    EXPECT_EQ(kinds[1].place, "yarn.white");
-
-    const Cloth again = read_text(cloth.source);
-    EXPECT_EQ(again.source, cloth.source);
-    EXPECT_EQ(again.yarns, cloth.yarns);
-    EXPECT_EQ(again.draft.warp_yarns, cloth.draft.warp_yarns);
-    EXPECT_NE(read_text(striped("\"red\", \"red\"", "\"red\"")).source, cloth.source);
-}
-
-constexpr std::string_view kColouredWif =
-    "[WEAVING]\nRising Shed=yes\n[WARP]\nThreads=4\n[WEFT]\nThreads=2\nColor=7\n"
-    "[THREADING]\n1=1\n2=2\n3=1\n4=2\n[LIFTPLAN]\n1=1\n2=2\n[COLOR PALETTE]\nRange=0,255\n"
-    "[COLOR TABLE]\n3=255,0,0\n7=255,255,255\n[WARP COLORS]\n1=3\n2=3\n3=7\n4=7\n";
-
-TEST(YarnOrder, FollowsTheColoursOfTheDraft) {
-    const tests::TemporaryFolder folder;
-    write(folder, "stripes.wif", kColouredWif);
-    std::string text = striped("weave = \"plain\"", "draft = 'stripes.wif'");
-    text.replace(text.find("order = [\"red\", \"red\", \"white\"]"), 31,
-                 "colors = {3 = \"white\", 7 = \"red\"}");
-    const Cloth cloth = read_cloth(write(folder, "cloth.toml", text));
-    EXPECT_EQ(cloth.yarns[0].name, "white"); // that of the first end
-    EXPECT_EQ(cloth.draft.warp_yarns, (std::vector<int>{0, 0, 1, 1}));
-    EXPECT_EQ(cloth.draft.weft_yarns, (std::vector<int>{0, 0}));
-    EXPECT_EQ(read_text(cloth.source).source, cloth.source);
-
-    const auto refused = [&](std::string_view old_words, std::string_view new_words) {
-        std::string wrong = text;
-        wrong.replace(wrong.find(old_words), old_words.size(), new_words);
-        try {
-            read_cloth(write(folder, "cloth.toml", wrong));
-        } catch (const FileError& error) {
-            return std::string(error.what());
-        }
-        return std::string("accepted");
-    };
-    EXPECT_NE(refused("7 = \"red\"", "8 = \"red\"").find("a yarn for colour 7"), std::string::npos);
-    EXPECT_NE(refused("7 = \"red\"", "x = \"red\"").find("number of a colour"), std::string::npos);
-    EXPECT_NE(refused("draft = 'stripes.wif'", "weave = 'plain'").find("a draft that tells"),
-              std::string::npos);
-}
-
-TEST(Colourway, NamesYarnsOfTheCloth) {
-    const std::string text = striped("", "") + "[colourway.a]\nyarn.red.color = [0.1, 0.2, 0.3]\n"
-                                               "yarn.spare.color = [0.1, 0.1, 0.1]\n";
-    const Cloth cloth = read_text(text);
-    EXPECT_TRUE(cloth.colourways.at("a").at("yarn.red").color);
-    EXPECT_EQ(cloth.colourways.at("a").size(), 1u); // the spare is not woven
-    EXPECT_NE(refusal(text + "yarn.blue.color = [0, 0, 0]").expected.find("red, spare, white"),
-              std::string::npos);
-    EXPECT_NE(refusal(text + "warp.color = [0, 0, 0]").expected.find("yarn"), std::string::npos);
-    EXPECT_EQ(read_text(cloth.source).colourways, cloth.colourways);
-    const auto refused = [&](const std::string& colourway) {
-        return refusal(std::string(kCloth) + "[colourway.a]\n" + colourway).expected;
-    };
-    EXPECT_NE(refused("fill.color = [0, 0, 0]").find("warp, weft"), std::string::npos);
-    EXPECT_NE(refused("warp.colour = [0, 0, 0]").find("color, absorption_per_um"),
-              std::string::npos);
-    EXPECT_NE(refused("warp = {}").find("'color' or"), std::string::npos);
-    EXPECT_NE(refused("warp.color = [0, 0]").find("3 numbers"), std::string::npos);
-    EXPECT_NE(refused("warp = 1").find("a table"), std::string::npos);
-    std::string many(kCloth);
-    for (int i = 0; i < 33; ++i)
-        many += "[colourway." + std::to_string(i) + "]\n";
-    EXPECT_NE(refusal(many).expected.find("at most 32"), std::string::npos);
-    EXPECT_NE(refusal(std::string(kCloth) + "[colourway.'']\n").expected.find("a name"),
-              std::string::npos);
-}
-
-TEST(YarnOrder, BadOrdersAreRefused) {
-    EXPECT_NE(refusal(striped("\"red\", \"red\"", "\"blue\"")).expected.find("[yarn.blue]"),
-              std::string::npos);
-    EXPECT_NE(refusal(striped("order = [\"white\"]", "order = []")).expected.find("names"),
-              std::string::npos);
-    EXPECT_NE(refusal(striped("order = [\"white\"]", "order = [\"white\"]\nfibres = 3"))
-                  .expected.find("picks_per_cm, order"),
-              std::string::npos);
-    EXPECT_NE(refusal(striped("order = [\"white\"]", "")).expected.find("'weft.section'"),
-              std::string::npos);
-    EXPECT_NE(refusal(striped("fibres = 19", "fibres = 0")).found.find("0"), std::string::npos);
 }
 
 /// Line and column of the first `words` in `text`.
@@ -497,10 +313,10 @@ TEST(Cloth, ADraftThatCannotBeWovenIsRefusedInItsOwnFile) {
 
     const tests::TemporaryFolder folder;
     std::string text(kPlainWif);
-    const auto wif = write(folder, "float.wif",
-                           text.replace(text.find("\n2=2\n", text.find("LIFT")), 5, "\n2=1\n"));
-    const auto cloth =
-        write(folder, "cloth.toml", with("weave = \"twill 2/1 Z\"", "draft = 'float.wif'"));
+    const auto wif = tests::write_bytes(
+        folder, "float.wif", text.replace(text.find("\n2=2\n", text.find("LIFT")), 5, "\n2=1\n"));
+    const auto cloth = tests::write_bytes(folder, "cloth.toml",
+                                          with("weave = \"twill 2/1 Z\"", "draft = 'float.wif'"));
     try {
         read_cloth(cloth);
         ADD_FAILURE() << "accepted";
@@ -523,7 +339,7 @@ TEST(Cloth, SurvivesRandomDamage) {
         for (size_t flips = 1 + below(4); flips > 0 && !text.empty(); --flips)
             text[below(text.size())] = round % 2 ? char(below(256)) : "019-.=[]{}\"'#\n"[below(14)];
         try {
-            read_cloth(write(folder, "damaged.toml", text));
+            read_cloth(tests::write_bytes(folder, "damaged.toml", text));
         } catch (const FileError& error) {
             ++refused;
             EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
@@ -534,7 +350,7 @@ TEST(Cloth, SurvivesRandomDamage) {
 
 TEST(ViscoseCloth, IsWovenToTheDraft) {
     const tests::TemporaryFolder folder;
-    const auto wif = write(folder, "plain.wif", kPlainWif);
+    const auto wif = tests::write_bytes(folder, "plain.wif", kPlainWif);
     const Cloth cloth = viscose_cloth(wif);
     EXPECT_EQ(cloth.name, "viscose");
     EXPECT_EQ(cloth.path, wif);
@@ -543,41 +359,6 @@ TEST(ViscoseCloth, IsWovenToTheDraft) {
     EXPECT_EQ(read_text(cloth.source).source, cloth.source);
     // 20·√(dtex/(π·ρ)) [µm] for 1.7 dtex at 1.52 g/cm³.
     EXPECT_NEAR(cloth.warp.fibre.diameter_um, 11.93, 0.05);
-}
-
-std::vector<Cloth> our_cloths() {
-    const auto folder = std::filesystem::path(RAPPORT_SOURCE_DIR) / "scenes" / "cloths";
-    std::vector<Cloth> cloths;
-    for (const auto& file : std::filesystem::directory_iterator(folder))
-        if (file.path().extension() == ".toml")
-            cloths.push_back(read_cloth(file.path()));
-    return cloths;
-}
-
-// A cloth of perfect fibres is the paper's known fault.
-TEST(OurCloths, AreOfImperfectFibresWithAKnownWeight) {
-    const std::vector<Cloth> cloths = our_cloths();
-    EXPECT_GE(cloths.size(), 10u);
-    for (const Cloth& cloth : cloths)
-        for (const YarnKind& kind : yarn_kinds(cloth)) {
-            EXPECT_TRUE(kind.yarn->fibre.density_g_cm3) << cloth.path << kind.place;
-            EXPECT_GT(kind.yarn->fibre.diameter_variation, 0) << cloth.path << kind.place;
-            EXPECT_GT(kind.yarn->irregularity.deviation_degrees, 0) << cloth.path << kind.place;
-            EXPECT_GT(kind.yarn->irregularity.spacing_jitter_um, 0) << cloth.path << kind.place;
-            EXPECT_GT(kind.yarn->irregularity.stray_fibres, 0) << cloth.path << kind.place;
-        }
-}
-
-// The published twills after which these two are made.
-TEST(OurCloths, WeighWhatTheirSourcesSay) {
-    for (const auto& [name, mass, thickness] :
-         {std::tuple("denim", 249.0, 500.0), {"cotton-twill", 248.0, 530.0}}) {
-        const MicroElement element = build_micro_element(
-            read_cloth(std::string(RAPPORT_SOURCE_DIR "/scenes/cloths/") + name + ".toml"),
-            {.max_turn_degrees = 8});
-        EXPECT_NEAR(element.mass_g_per_m2.value(), mass, 0.15 * mass) << name;
-        EXPECT_NEAR(element.thickness_um, thickness, 0.15 * thickness) << name;
-    }
 }
 
 } // namespace

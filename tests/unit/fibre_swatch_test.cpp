@@ -13,20 +13,9 @@
 namespace rapport {
 namespace {
 
-/// Without dyes: nothing but the cap on events takes light away.
-Cloth white_plain() {
-    Cloth cloth = read_cloth(RAPPORT_SOURCE_DIR "/scenes/cloths/viscose-plain.toml");
-    for (FibreSpec* fibre : {&cloth.warp.fibre, &cloth.weft.fibre}) {
-        fibre->color.reset();
-        fibre->absorption_per_um.reset();
-        fibre->surface_absorption = 0;
-    }
-    cloth.colourways.clear();
-    return cloth;
-}
-
 std::shared_ptr<const FibreSwatch> swatch(double size_um) {
-    return std::make_shared<const FibreSwatch>(white_plain(), glm::dvec2(size_um), "");
+    return std::make_shared<const FibreSwatch>(tests::clear_cloth("viscose-plain"),
+                                               glm::dvec2(size_um), "");
 }
 
 double mean_green(const Scene& scene) {
@@ -54,18 +43,19 @@ TEST(FibreSwatch, DisappearsInAFurnace) {
     }
 }
 
-TEST(FibreSwatch, ShadowsTheLightThatItsFibresStop) {
-    // A plate under the swatch, seen from below: in a furnace again, but a twin without gaps
-    // between the yarns, to whose shadow the unscattered light adds twice, would be brighter than
-    // the sky.
+TEST(FibreSwatch, LetsLightSamplesThroughItsGapsAlone) {
+    // A furnace whose walls are lamps, which are sampled: light that reaches the plate through gaps
+    // between yarns is found by shadow rays too, and the rest by paths alone. Fibres that cast no
+    // shadow would make the plate brighter than the walls, fibres without gaps darker.
     std::vector<Surface> surfaces;
     surfaces.push_back(tests::fibre_surface(swatch(3000)));
-    TriangleMesh plate = tests::level_square(1e-4f, -1e-4f);
-    surfaces.push_back(tests::surface(plate, tests::diffuse(1)));
-    const Scene scene(std::move(surfaces), {tests::sky(1)},
-                      tests::parallel_camera({0, 0, 1e-2f}, {}, 5e-5f, 8),
-                      tests::settings(64, 400));
-    EXPECT_NEAR(mean_green(scene), 1, 3e-3);
+    surfaces.push_back(tests::surface(tests::level_square(1e-4f, -1e-4f), tests::diffuse(1)));
+    TriangleMesh walls = tests::cube(0.02f);
+    reverse_orientation(walls);
+    surfaces.push_back(tests::surface(std::move(walls), tests::diffuse(0), 1));
+    const Scene scene(std::move(surfaces), {}, tests::parallel_camera({0, 0, 1e-2f}, {}, 5e-5f, 8),
+                      tests::settings(256, 400));
+    EXPECT_NEAR(mean_green(scene), 1, 5e-3);
 }
 
 TEST(FibreSwatch, LooksTheSameAtEverySizeAndPlace) {

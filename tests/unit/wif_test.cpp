@@ -4,6 +4,7 @@
 #include "renderer/core/rng.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/long_run.h"
+#include "tests/support/refusal.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 #include "vgsp/weave.h"
@@ -36,25 +37,13 @@ std::string wif_text(const std::map<std::string, std::string>& sections) {
     return text;
 }
 
-std::filesystem::path write(const tests::TemporaryFolder& folder, const std::string& name,
-                            std::string_view text) {
-    const std::filesystem::path file = folder / name;
-    tests::write_bytes(file, std::string(text));
-    return file;
-}
-
 Draft read_text(std::string_view text) {
     const tests::TemporaryFolder folder;
-    return read_wif(write(folder, "draft.wif", text));
+    return read_wif(tests::write_bytes(folder, "draft.wif", text));
 }
 
 FileError refusal(std::string_view text) {
-    try {
-        read_text(text);
-    } catch (const FileError& error) {
-        return error;
-    }
-    return FileError("", "", "", "accepted");
+    return tests::refusal_of([&] { read_text(text); });
 }
 
 bool warns(const Draft& draft, std::string_view words) {
@@ -165,7 +154,7 @@ TEST(SharedDrafts, SurviveRandomDamage) {
                 text[below(text.size())] =
                     round % 3 ? char(below(256)) : "0123456789=,[];\r\n"[below(17)];
             try {
-                const Draft draft = read_wif(write(folder, "damaged.wif", text));
+                const Draft draft = read_wif(tests::write_bytes(folder, "damaged.wif", text));
                 EXPECT_LE(int64_t(draft.ends) * draft.picks, kMaxCrossings);
                 EXPECT_EQ(draft.warp_up.size(), size_t(draft.ends) * draft.picks);
             } catch (const FileError& error) {

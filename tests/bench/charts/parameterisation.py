@@ -57,6 +57,7 @@ def equal_area_disc(w, light):
 
 
 def slide(x, origin):
+    origin = np.clip(origin, -0.97, 0.97)  # kFarthest of materials/table/exit_chart.h
     length = np.where(x >= origin, 1 - origin, 1 + origin)
     return (x - origin) / length, length
 

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "tests/support/file_bytes.h"
+#include "tests/support/refusal.h"
+#include "vgsp/cloth.h"
+
+// Cloth files as text, read from a file of their own.
+
+namespace rapport::tests {
+
+inline constexpr std::string_view kCloth = R"(name = "test cloth"
+weave = "twill 2/1 Z"
+crimp_balance = 0.25
+
+[warp]
+ends_per_cm = 40
+section = "parallel"
+fibres = 37
+width_um = 130.5
+height_um = 90
+flatten = 0.8
+[warp.fibre]
+diameter_um = 11.9
+refractive_index = 1.526
+absorption_per_um = [0.001, 0.002, 0.003]
+
+[weft]
+picks_per_cm = 30
+section = "twisted"
+fibres = 61
+diameter_um = 150
+twist_per_m = -700
+[weft.fibre]
+diameter_um = 12
+refractive_index = 1.55
+color = [0.5, 0.25, 0]
+surface_absorption = 0.01
+roughness = 0.2
+)";
+
+inline Cloth read_text(std::string_view text) {
+    const TemporaryFolder folder;
+    return read_cloth(write_bytes(folder, "cloth.toml", text));
+}
+
+inline FileError refusal(std::string_view text) {
+    return refusal_of([&] { read_text(text); });
+}
+
+} // namespace rapport::tests
