@@ -1,8 +1,8 @@
 #include "renderer/app/info.h"
 #include "renderer/core/image.h"
-#include "renderer/scene/gltf.h"
-#include "renderer/scene/pbrt_parser.h"
-#include "renderer/scene/uv_scale.h"
+#include "renderer/scene/gltf/gltf.h"
+#include "renderer/scene/mesh/uv_scale.h"
+#include "renderer/scene/pbrt/pbrt_parser.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/scene/light.h"
+#include "renderer/scene/light/light.h"
 
 namespace rapport {
 

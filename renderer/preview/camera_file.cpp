@@ -3,7 +3,7 @@
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/core/input_file.h"
-#include "renderer/scene/pbrt_lexer.h"
+#include "renderer/scene/pbrt/pbrt_lexer.h"
 
 #include <fmt/format.h>
 #include <sstream>

@@ -1,7 +1,7 @@
 #include "renderer/scene/model_scene.h"
 
 #include "renderer/core/error.h"
-#include "renderer/scene/gltf.h"
+#include "renderer/scene/gltf/gltf.h"
 
 #include <algorithm>
 #include <limits>

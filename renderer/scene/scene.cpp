@@ -1,6 +1,6 @@
 #include "renderer/scene/scene.h"
 
-#include "renderer/scene/mesh_operations.h"
+#include "renderer/scene/mesh/mesh_operations.h"
 
 #include <algorithm>
 #include <limits>

@@ -2,14 +2,14 @@
 
 #include "materials/bsdf.h"
 #include "renderer/kernel/scene.h"
-#include "renderer/scene/area_light.h"
 #include "renderer/scene/camera.h"
-#include "renderer/scene/light.h"
-#include "renderer/scene/mesh.h"
+#include "renderer/scene/light/area_light.h"
+#include "renderer/scene/light/light.h"
+#include "renderer/scene/mesh/mesh.h"
 #include "renderer/scene/picture.h"
-#include "renderer/scene/placed_fibres.h"
 #include "renderer/scene/render_settings.h"
 #include "renderer/scene/scene_description.h"
+#include "renderer/scene/shape/placed_fibres.h"
 
 #include <memory>
 #include <optional>

@@ -2,8 +2,8 @@
 
 #include "renderer/core/error.h"
 #include "renderer/scene/imagemap.h"
-#include "renderer/scene/mesh_operations.h"
-#include "renderer/scene/shape.h"
+#include "renderer/scene/mesh/mesh_operations.h"
+#include "renderer/scene/shape/shape.h"
 
 #include <algorithm>
 #include <fmt/format.h>

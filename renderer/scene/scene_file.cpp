@@ -3,7 +3,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/input_file.h"
 #include "renderer/scene/model_scene.h"
-#include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/pbrt/pbrt_parser.h"
 
 namespace rapport {
 

@@ -1,4 +1,4 @@
-#include "renderer/scene/gltf.h"
+#include "renderer/scene/gltf/gltf.h"
 #include "tests/fuzz/input_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,4 +1,4 @@
-#include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/pbrt/pbrt_parser.h"
 #include "renderer/scene/scene_builder.h"
 #include "tests/fuzz/input_file.h"
 

@@ -1,5 +1,5 @@
 #include "renderer/integrator/path_tracer.h"
-#include "renderer/scene/fibre_swatch.h"
+#include "renderer/scene/shape/fibre_swatch.h"
 #include "tests/support/long_run.h"
 #include "tests/support/swatch.h"
 #include "vgsp/measure_cloth.h"

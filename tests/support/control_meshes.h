@@ -1,7 +1,7 @@
 #pragma once
 
-#include "renderer/scene/mesh_cleaning.h"
-#include "renderer/scene/subdivision.h"
+#include "renderer/scene/mesh/mesh_cleaning.h"
+#include "renderer/scene/mesh/subdivision.h"
 
 #include <functional>
 #include <gtest/gtest.h>

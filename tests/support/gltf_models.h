@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/core/error.h"
-#include "renderer/scene/gltf.h"
+#include "renderer/scene/gltf/gltf.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/gltf_writer.h"
 #include "tests/support/temporary_folder.h"

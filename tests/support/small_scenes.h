@@ -2,8 +2,8 @@
 
 #include "materials/bsdf.h"
 #include "materials/table/table_bsdf.h"
-#include "renderer/scene/light.h"
-#include "renderer/scene/mesh_operations.h"
+#include "renderer/scene/light/light.h"
+#include "renderer/scene/mesh/mesh_operations.h"
 #include "renderer/scene/scene.h"
 #include "tests/support/synthetic_tables.h"
 

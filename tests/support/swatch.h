@@ -2,7 +2,7 @@
 
 #include "materials/table/bsdf_table.h"
 #include "renderer/integrator/path_tracer.h"
-#include "renderer/scene/fibre_swatch.h"
+#include "renderer/scene/shape/fibre_swatch.h"
 #include "tests/support/small_scenes.h"
 
 #include <algorithm>

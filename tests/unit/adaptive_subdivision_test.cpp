@@ -1,8 +1,8 @@
-#include "renderer/scene/subdivision.h"
+#include "renderer/scene/mesh/subdivision.h"
 
-#include "renderer/scene/auto_uvs.h"
-#include "renderer/scene/limit_surface.h"
-#include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/mesh/auto_uvs.h"
+#include "renderer/scene/mesh/limit_surface.h"
+#include "renderer/scene/pbrt/pbrt_parser.h"
 #include "renderer/scene/scene_builder.h"
 #include "tests/support/control_meshes.h"
 #include "tests/support/gltf_models.h"

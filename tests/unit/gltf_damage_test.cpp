@@ -1,4 +1,4 @@
-#include "renderer/scene/gltf.h"
+#include "renderer/scene/gltf/gltf.h"
 
 #include "tests/support/gltf_models.h"
 #include "tests/support/shared_data.h"

@@ -1,6 +1,6 @@
-#include "renderer/scene/mesh_cleaning.h"
+#include "renderer/scene/mesh/mesh_cleaning.h"
 
-#include "renderer/scene/manifold.h"
+#include "renderer/scene/mesh/manifold.h"
 
 #include <gtest/gtest.h>
 

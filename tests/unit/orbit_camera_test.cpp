@@ -2,7 +2,7 @@
 #include "tests/support/temporary_folder.h"
 
 #include "renderer/preview/camera_file.h"
-#include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/pbrt/pbrt_parser.h"
 #include "tests/support/file_bytes.h"
 
 #include <glm/gtc/matrix_transform.hpp>

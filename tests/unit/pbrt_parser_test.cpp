@@ -1,4 +1,4 @@
-#include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/pbrt/pbrt_parser.h"
 
 #include "renderer/core/error.h"
 #include "tests/support/temporary_folder.h"

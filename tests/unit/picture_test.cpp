@@ -2,7 +2,7 @@
 
 #include "renderer/core/image.h"
 #include "renderer/scene/model_scene.h"
-#include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/pbrt/pbrt_parser.h"
 #include "renderer/scene/scene_builder.h"
 #include "tests/support/gltf_models.h"
 

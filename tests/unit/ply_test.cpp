@@ -1,4 +1,4 @@
-#include "renderer/scene/ply.h"
+#include "renderer/scene/mesh/ply.h"
 
 #include "renderer/core/error.h"
 #include "tests/support/file_bytes.h"

@@ -2,7 +2,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/fresnel.h"
 #include "renderer/integrator/path_tracer.h"
-#include "renderer/scene/pbrt_parser.h"
+#include "renderer/scene/pbrt/pbrt_parser.h"
 #include "renderer/scene/scene_builder.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/small_scenes.h"

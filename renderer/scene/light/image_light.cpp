@@ -1,0 +1,155 @@
+#include "renderer/scene/light/image_light.h"
+
+#include "renderer/core/error.h"
+#include "renderer/core/octahedral.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+
+namespace rapport {
+namespace {
+
+/// The rotation or reflection in `matrix`, without its uniform scale.
+glm::mat3 rotation_of(const glm::mat4& matrix, const Params& params) {
+    const glm::mat3 linear(matrix);
+    const float scale = std::cbrt(std::abs(glm::determinant(linear)));
+    const glm::mat3 rotation = linear / scale;
+    const glm::mat3 defect = glm::transpose(rotation) * rotation - glm::mat3(1);
+    for (int i = 0; i < 3; ++i)
+        if (!(glm::length(defect[i]) < 1e-4f))
+            params.fail("", "an image light that is only rotated, reflected or scaled uniformly",
+                        "a transformation that distorts angles");
+    return rotation;
+}
+
+} // namespace
+
+ImageLight::ImageLight(const LightContext& context)
+    : to_world_(rotation_of(context.to_world, context.params)),
+      from_world_(glm::transpose(to_world_)) {
+    const std::string filename = context.params.get_string("filename", "");
+    read_pixels(context.params, context.base_dir / filename);
+    prepare_sampling();
+}
+
+void ImageLight::read_pixels(const Params& params, const std::filesystem::path& file) {
+    const Image image = read_exr(file);
+    width_ = image.width;
+    height_ = image.height;
+    octahedral_ = width_ == height_;
+    if (!octahedral_ && width_ != 2 * height_)
+        throw FileError(file.string(), "", "a square or a 2:1 image as light",
+                        fmt::format("{} × {} pixels", width_, height_));
+    const float scale = light_scale(params);
+    pixels_.resize(static_cast<size_t>(width_) * height_);
+    static constexpr const char* kChannels[] = {"R", "G", "B"};
+    for (int c = 0; c < 3; ++c) {
+        const std::vector<float>* plane = image.find(kChannels[c]);
+        if (!plane)
+            throw FileError(file.string(), "", "channels R, G and B",
+                            fmt::format("no channel {}", kChannels[c]));
+        for (size_t i = 0; i < pixels_.size(); ++i) {
+            const float value = (*plane)[i] * scale;
+            if (!(value >= 0 && value < std::numeric_limits<float>::infinity()))
+                throw FileError(
+                    file.string(), fmt::format("pixel ({}, {})", i % width_, i / width_),
+                    "radiance that is finite and not negative", fmt::format("{}", value));
+            pixels_[i][c] = value;
+        }
+    }
+}
+
+/// A cell's weight is the flux through it: solid angle × the mean luminance of the bilinear
+/// lookup over the cell, which is [1 6 1]/8 × [1 6 1]/8 over the neighbours. It is positive
+/// wherever the lookup is.
+void ImageLight::prepare_sampling() {
+    static constexpr float kMean[] = {1 / 8.f, 6 / 8.f, 1 / 8.f};
+    std::vector<float> weights(pixels_.size());
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x) {
+            float mean = 0;
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx)
+                    mean += kMean[dx + 1] * kMean[dy + 1] * luminance(pixel(x + dx, y + dy));
+            const glm::dvec2 centre((x + 0.5) / width_, (y + 0.5) / height_);
+            weights[static_cast<size_t>(y) * width_ + x] =
+                mean * static_cast<float>(solid_angle(centre));
+        }
+    distribution_.emplace(weights, width_, height_);
+}
+
+void ImageLight::prepare(const glm::vec3&, float scene_radius) { scene_radius_ = scene_radius; }
+
+std::optional<LightSample> ImageLight::sample(const glm::vec3&, const glm::vec2& u) const {
+    const auto sample = distribution_->sample(u);
+    const double jacobian = solid_angle(sample.position);
+    if (!(jacobian > 0))
+        return std::nullopt; // a pole of the latitude–longitude map
+    return LightSample{to_world_ * from_image(sample.position),
+                       std::numeric_limits<float>::infinity(), lookup(sample.position),
+                       static_cast<float>(sample.pdf / jacobian), false};
+}
+
+Rgb ImageLight::escaped(const glm::vec3& direction) const {
+    return lookup(to_image(from_world_ * direction));
+}
+
+float ImageLight::escaped_pdf(const glm::vec3& direction) const {
+    const glm::dvec2 position = to_image(from_world_ * direction);
+    const double jacobian = solid_angle(position);
+    return jacobian > 0 ? static_cast<float>(distribution_->pdf(position) / jacobian) : 0;
+}
+
+float ImageLight::power() const {
+    const double flux = distribution_->total() / static_cast<double>(pixels_.size());
+    return static_cast<float>(kPi * flux) * square(scene_radius_);
+}
+
+glm::dvec2 ImageLight::to_image(const glm::vec3& direction) const {
+    constexpr double kBelowOne = 1 - 0x1p-53;
+    const glm::dvec3 w = glm::normalize(glm::dvec3(direction));
+    const glm::dvec2 position = octahedral_
+                                    ? sphere_to_octahedral(w)
+                                    : glm::dvec2(0.5 - std::atan2(w.y, w.x) / (2 * kPi),
+                                                 std::acos(std::clamp(w.z, -1.0, 1.0)) / kPi);
+    return glm::clamp(position, 0.0, kBelowOne);
+}
+
+glm::vec3 ImageLight::from_image(const glm::dvec2& position) const {
+    return glm::vec3(octahedral_
+                         ? octahedral_to_sphere(position)
+                         : spherical_direction(kPi * position.y, 2 * kPi * (0.5 - position.x)));
+}
+
+double ImageLight::solid_angle(const glm::dvec2& position) const {
+    return octahedral_ ? 4 * kPi : 2 * kPi * kPi * std::sin(kPi * position.y);
+}
+
+Rgb ImageLight::pixel(int x, int y) const {
+    if (octahedral_) { // each edge of the square is folded onto itself at its middle
+        if (x < 0 || x >= width_) {
+            x = std::clamp(x, 0, width_ - 1);
+            y = height_ - 1 - y;
+        }
+        if (y < 0 || y >= height_) {
+            y = std::clamp(y, 0, height_ - 1);
+            x = width_ - 1 - x;
+        }
+    } else {
+        x = (x + width_) % width_;
+        y = std::clamp(y, 0, height_ - 1);
+    }
+    return pixels_[static_cast<size_t>(y) * width_ + x];
+}
+
+Rgb ImageLight::lookup(const glm::dvec2& position) const {
+    const glm::dvec2 place = position * glm::dvec2(width_, height_) - 0.5;
+    const glm::dvec2 floor = glm::floor(place);
+    const glm::vec2 f(place - floor);
+    const int x = static_cast<int>(floor.x), y = static_cast<int>(floor.y);
+    return glm::mix(glm::mix(pixel(x, y), pixel(x + 1, y), f.x),
+                    glm::mix(pixel(x, y + 1), pixel(x + 1, y + 1), f.x), f.y);
+}
+
+} // namespace rapport
