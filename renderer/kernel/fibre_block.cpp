@@ -5,9 +5,22 @@
 
 #include <algorithm>
 #include <stdexcept>
+#if defined(__SANITIZE_THREAD__)
+#include <sanitizer/tsan_interface.h>
+#endif
 
 namespace rapport::kernel {
 namespace {
+
+// Embree builds its tree on threads of TBB, which read the block, and commits when they are done.
+// ThreadSanitizer cannot see that in those libraries' own code and is told here.
+#if defined(__SANITIZE_THREAD__)
+void has_read(const FibreBlock& block) { __tsan_release(const_cast<FibreBlock*>(&block)); }
+void all_have_read(const FibreBlock& block) { __tsan_acquire(const_cast<FibreBlock*>(&block)); }
+#else
+void has_read(const FibreBlock&) {}
+void all_have_read(const FibreBlock&) {}
+#endif
 
 constexpr double kLargestShift = std::numeric_limits<int16_t>::max();
 
@@ -72,6 +85,7 @@ struct Callbacks {
         const glm::dvec3 offset = block.offset(copy.shift), pad(4 * block.tolerance_);
         const glm::vec3 from(low + offset - pad), to(high + offset + pad);
         *arguments->bounds_o = {from.x, from.y, from.z, 0, to.x, to.y, to.z, 0};
+        has_read(block);
     }
 
     /// The origin is within rounding of this copy's surface, or inside its cylinder: decided in
@@ -167,6 +181,7 @@ FibreBlock::FibreBlock(const FibreAssembly& assembly)
     rtcAttachGeometry(embree_->scene.get(), geometry.get());
     rtcSetSceneBuildQuality(embree_->scene.get(), RTC_BUILD_QUALITY_HIGH);
     rtcCommitScene(embree_->scene.get());
+    all_have_read(*this);
     embree::check(device);
 }
 FibreBlock::~FibreBlock() = default;

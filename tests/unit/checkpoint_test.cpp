@@ -124,13 +124,19 @@ TEST_F(Checkpointed, WhatBelongsToAnotherRunIsRefused) {
 TEST(Command, AKilledMeasurementIsResumedToTheSameBytes) {
     ASSERT_EQ(access(RAPPORT_PROGRAM, X_OK), 0) << "the program is not built";
     const tests::TemporaryFolder folder;
-    const std::string cloth = RAPPORT_SOURCE_DIR "/scenes/cloths/viscose-plain.toml";
+    // Without a wanted color, whose paths would come before the first checkpoint.
+    const std::string yarn = "section = 'parallel'\nfibres = 7\nwidth_um = 60\nheight_um = 60\n"
+                             "fibre = { diameter_um = 16, refractive_index = 1.5 }\n";
+    const std::string cloth = tests::write_bytes(folder, "cloth.toml",
+                                                 "weave = 'plain'\n[warp]\nends_per_cm = 60\n" +
+                                                     yarn + "[weft]\npicks_per_cm = 60\n" + yarn)
+                                  .string();
     // Runs the program, killed after so many microseconds; the signal that ended it, or 0.
     const auto vgsp = [&](const std::string& output, bool resume, useconds_t killed_after) {
         std::vector<std::string> words{
             RAPPORT_PROGRAM, "vgsp",           cloth,        "--incidence", "30,20",
             "--side",        "front",          "--accuracy", "1e-3",        "--max-rays",
-            "50000",         "--realisations", "2",          "--quiet",     "-o",
+            "100000",        "--realisations", "2",          "--quiet",     "-o",
             output};
         if (resume)
             words.push_back("--resume");
