@@ -1,7 +1,6 @@
 #include "vgsp/checkpoint_file.h"
 
-#include "renderer/core/error.h"
-#include "renderer/core/tensor_file.h"
+#include "renderer/core/checkpoint.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,41 +21,6 @@ nlohmann::json identity(const BsdfTable& table) {
     return run;
 }
 
-/// A value for a message.
-std::string excerpt(const nlohmann::json& run, const std::string& key) {
-    if (!run.contains(key))
-        return "nothing";
-    const std::string text = run[key].is_string() ? run[key].get<std::string>() : run[key].dump();
-    const size_t end = text.find('\n');
-    return end < 60 || text.size() > 60 ? text.substr(0, std::min<size_t>(end, 60)) + " …" : text;
-}
-
-/// FileError naming the first thing that differs.
-void check_same_run(const nlohmann::json& expected, const nlohmann::json& found,
-                    const std::string& path) {
-    if (!found.is_object())
-        throw FileError(path, "run", "a JSON object", found.type_name());
-    for (const nlohmann::json& one : {expected, found})
-        for (const auto& [key, value] : one.items())
-            if (!expected.contains(key) || !found.contains(key) || expected[key] != found[key])
-                throw FileError(
-                    path, key,
-                    fmt::format("the checkpoint of this run ({})", excerpt(expected, key)),
-                    excerpt(found, key));
-}
-
-template <class T>
-std::vector<T> array(const TensorFile& file, const std::string& name,
-                     const std::vector<uint64_t>& shape, const std::string& path) {
-    const auto found = file.find(name);
-    if (found == file.end())
-        throw FileError(path, name, "an array of that name", "none");
-    const TensorField like = TensorField::of<T>({0}, {});
-    if (found->second.type != like.type || found->second.shape != shape)
-        throw FileError(path, name, "an array laid out as this run's", "another type or shape");
-    return found->second.template values<T>();
-}
-
 } // namespace
 
 void write_checkpoint(const std::filesystem::path& path, const BsdfTable& table,
@@ -72,7 +36,7 @@ void write_checkpoint(const std::filesystem::path& path, const BsdfTable& table,
     }
     const uint64_t rows = tallies.size();
     TensorFile file;
-    file["run"] = TensorField::text(identity(table).dump());
+    file["run"] = run_field(identity(table));
     file["planned"] =
         TensorField::of<uint64_t>({planned.size()}, std::vector(planned.begin(), planned.end()));
     file["sums"] = TensorField::of<double>({rows, sums.size() / rows}, sums);
@@ -82,25 +46,20 @@ void write_checkpoint(const std::filesystem::path& path, const BsdfTable& table,
 
 void read_checkpoint(const std::filesystem::path& path, const BsdfTable& table,
                      std::vector<uint64_t>& planned, std::span<PathTally> tallies) {
-    const std::string name = path.string();
     const TensorFile file = read_tensor_file(path);
-    const auto run = file.find("run");
-    if (run == file.end() || run->second.type != TensorField::Type::u8)
-        throw FileError(name, "run", "the checkpoint of a measurement", "another kind of file");
-    check_same_run(identity(table), nlohmann::json::parse(run->second.text(), nullptr, false),
-                   name);
+    check_same_run(identity(table), file, path);
     const uint64_t directions = table.directions(), rows = tallies.size();
     const size_t own_sums = tallies[0].sums().size();
     const size_t own_counts = tallies[0].path_counts().size();
-    planned = array<uint64_t>(file, "planned", {directions}, name);
-    const auto sums = array<double>(file, "sums", {rows, own_sums}, name);
-    const auto counts = array<uint64_t>(file, "path_counts", {rows, own_counts}, name);
+    planned = checkpoint_array<uint64_t>(file, "planned", {directions}, path);
+    const auto sums = checkpoint_array<double>(file, "sums", {rows, own_sums}, path);
+    const auto counts = checkpoint_array<uint64_t>(file, "path_counts", {rows, own_counts}, path);
     for (size_t row = 0; row < rows; ++row) {
         tallies[row].restore(std::span(sums).subspan(row * own_sums, own_sums),
                              std::span(counts).subspan(row * own_counts, own_counts));
         const size_t d = row / (rows / directions);
         if (tallies[row].paths() > planned[d])
-            throw FileError(name, fmt::format("planned[{}]", d),
+            throw FileError(path.string(), fmt::format("planned[{}]", d),
                             fmt::format("at least {} paths", tallies[row].paths()),
                             fmt::format("{}", planned[d]));
     }

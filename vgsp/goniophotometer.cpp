@@ -20,9 +20,6 @@ constexpr uint64_t kMostPaths = uint64_t{1} << 40;
 constexpr uint64_t kFirstPilotPath = kMostPaths;   ///< the pilot's numbers come after all others
 constexpr size_t kWaitingBytes = size_t{64} << 20; ///< of deposits that wait to be summed
 
-/// How much longer tracing takes between two checkpoints than writing one.
-constexpr double kTracingPerSaving = 20;
-
 struct Task {
     size_t direction, group;
     uint64_t first, count;
@@ -242,7 +239,7 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
         const double saving = share < 1 ? save(planned, tallies) : 0;
         if (progress)
             progress(state(tallies, share));
-        const double wanted = std::max(1.0, kTracingPerSaving * saving);
+        const double wanted = std::max(1.0, kWorkPerSaving * saving);
         if (took < 0.5 * wanted)
             wave *= 2;
         else if (took > 1.5 * wanted)

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "materials/table/bsdf_table.h"
+#include "renderer/core/checkpoint.h"
 #include "renderer/core/stop_signal.h"
 #include "renderer/kernel/fibre_tracer.h"
 #include "vgsp/fibre_step.h"
 
-#include <filesystem>
 #include <functional>
 #include <span>
 
@@ -36,14 +36,6 @@ struct GoniophotometerCounts {
     uint64_t paths = 0, events = 0, overlaps = 0;
     uint64_t capped = 0; ///< out of events
     uint64_t lost = 0;   ///< of these, lost among the fibres (FibreTracer::Flight::lost)
-};
-
-/// Where a run keeps what it has summed so far: a file that is replaced whole at each increment.
-/// A run that goes on from it ends with the same numbers as one that was never interrupted. It is
-/// for the caller to remove it, once the result is safe.
-struct Checkpoint {
-    std::filesystem::path path; ///< empty = none is kept
-    bool resume = false;        ///< go on from the file, if there is one
 };
 
 /// Measures the scattering of any periodic assembly of fibres for the incident directions and

@@ -23,6 +23,7 @@ struct RenderOptions : SceneOptions {
     double error = 0; ///< 0 = none is asked for
     std::string aov;  ///< drawn instead of the picture
     double accuracy = 0.2;
+    bool resume = false;
 };
 
 SceneDescription describe(const RenderOptions& options, const CommonOptions& common) {
@@ -52,39 +53,37 @@ std::vector<std::filesystem::path> outputs(const RenderOptions& options,
     return paths;
 }
 
-Scene load(const RenderOptions& options, const CommonOptions& common,
-           const SceneDescription& description) {
-    std::optional<ProgressLine> line;
-    TableLoader tables(options.accuracy, common.seed,
-                       [&](const std::filesystem::path& path, double accuracy, double fraction) {
-                           if (!shows_progress(common))
-                               return;
-                           if (!line)
-                               line.emplace(std::cerr, "measuring " + path.filename().string());
-                           line->update(fraction, fmt::format("accuracy {:.4f}", accuracy));
-                       });
-    std::vector<std::string> warnings;
+Scene load(const RenderOptions& options, const SceneDescription& description, TableLoader& tables,
+           std::vector<std::string>& warnings) {
     BuildOptions build{options.cloth_of_material(),
                        [&](const std::filesystem::path& path, const std::string& colourway) {
                            return tables.load(path, colourway);
                        },
                        options.colourway_of_material()};
-    Scene scene = build_scene(description, build, warnings);
-    line.reset();
-    if (common.quiet)
-        return scene;
-    for (const std::string& warning : warnings)
-        fmt::print(stderr, "warning: {}\n", warning);
-    for (const auto& [path, table] : tables.measured())
-        fmt::print("{}: measured to accuracy {:.4f} on {} bins\n", path.string(),
-                   table->largest_accuracy(), 2 * table->exits.bins());
-    return scene;
+    return build_scene(description, build, warnings);
+}
+
+/// What the scene was made of, for its checkpoint.
+std::map<std::string, std::string> made_of(const RenderOptions& options, const InputLog& files,
+                                           const TableLoader& tables) {
+    std::map<std::string, std::string> parts;
+    for (const auto& [name, hashes] : files.hashes())
+        parts["file " + name] = hashes;
+    for (const auto& [material, cloth] : options.cloth_of_material())
+        parts["cloth " + material] = cloth.filename().string();
+    for (const auto& [material, colourway] : options.colourway_of_material())
+        parts["colourway " + material] = colourway;
+    for (const auto& [key, loaded] : tables.tables())
+        if (lower_extension(loaded.path) != ".bsdf")
+            parts["accuracy"] = fmt::format("{}", options.accuracy);
+    return parts;
 }
 
 volatile std::sig_atomic_t interrupted = 0;
 
 /// Renders; Ctrl-C ends it with the samples that there are.
-Film render_watched(const Scene& scene, const CommonOptions& common) {
+Film render_watched(const Scene& scene, const CommonOptions& common,
+                    const RenderCheckpoint& checkpoint) {
     std::optional<ProgressLine> line;
     if (shows_progress(common))
         line.emplace(std::cerr, "rendering");
@@ -95,36 +94,75 @@ Film render_watched(const Scene& scene, const CommonOptions& common) {
             line->update(fraction, fmt::format("{:.4g} samples", samples));
     };
     watcher.stopped = [] { return interrupted != 0; };
-    Film film = render(scene, watcher);
+    Film film = render(scene, watcher, checkpoint);
     std::signal(SIGINT, SIG_DFL);
     return film;
 }
 
-void run(const RenderOptions& options, const CommonOptions& common) {
-    const SceneDescription description = describe(options, common);
-    const std::vector<std::filesystem::path> paths = outputs(options, description.settings.output);
-    const Scene scene = load(options, common, description);
+/// The errors of the measured tables, which no sample of the picture can tell of.
+std::string table_errors(const TableLoader& tables) {
+    std::string text;
+    for (const auto& [key, loaded] : tables.tables()) {
+        const BsdfTable& table = loaded.table->table();
+        const std::string colourway = key.second.empty() ? "" : " in " + key.second;
+        text += fmt::format("{}{}: accuracy {:.4f} on {} bins, which is not in that noise\n",
+                            loaded.path.string(), colourway, table.largest_accuracy(),
+                            2 * table.exits.bins());
+    }
+    return text;
+}
 
-    const auto start = std::chrono::steady_clock::now();
-    const Film film = render_watched(scene, common);
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const std::string samples = fmt::format("{:.4g}", film.mean_samples());
-    const std::string noise = fmt::format("{:.4g}", film.noise().relative());
-
+/// The film's image, or what is drawn instead of it, and how it came about.
+Image described_image(const Film& film, const Scene& scene, const RenderOptions& options,
+                      const CommonOptions& common) {
+    Image image = film.image();
+    if (options.aov == "warp")
+        image = warp_streaks(image, scene.camera);
     std::string command = "rapport render " + options.scene;
     for (const std::string& cloth : options.cloths)
         command += " --cloth " + cloth;
     for (const std::string& colourway : options.colourways)
         command += " --colourway " + colourway;
-    Image image = film.image();
-    if (options.aov == "warp")
-        image = warp_streaks(image, scene.camera);
     image.attributes["command"] = command;
     image.attributes["seed"] = std::to_string(common.seed);
-    image.attributes["samples"] = samples;
-    image.attributes["noise"] = noise;
+    image.attributes["samples"] = fmt::format("{:.4g}", film.mean_samples());
+    image.attributes["noise"] = fmt::format("{:.4g}", film.noise().relative());
+    return image;
+}
+
+void run(const RenderOptions& options, const CommonOptions& common) {
+    InputLog files;
+    const SceneDescription description = describe(options, common);
+    const std::vector<std::filesystem::path> paths = outputs(options, description.settings.output);
+    std::optional<ProgressLine> line;
+    TableLoader tables(options.accuracy, common.seed,
+                       [&](const std::filesystem::path& path, double accuracy, double fraction) {
+                           if (!shows_progress(common))
+                               return;
+                           if (!line)
+                               line.emplace(std::cerr, "measuring " + path.filename().string());
+                           line->update(fraction, fmt::format("accuracy {:.4f}", accuracy));
+                       });
+    std::vector<std::string> warnings;
+    const Scene scene = load(options, description, tables, warnings);
+    line.reset();
+    if (!common.quiet)
+        for (const std::string& warning : warnings)
+            fmt::print(stderr, "warning: {}\n", warning);
+    RenderCheckpoint checkpoint{{paths[0], options.resume}, made_of(options, files, tables)};
+    checkpoint.path += ".part";
+    if (options.resume && !common.quiet && !std::filesystem::exists(checkpoint.path))
+        fmt::print(stderr, "{}: not there, so the picture starts from the beginning\n",
+                   checkpoint.path.string());
+
+    const auto start = std::chrono::steady_clock::now();
+    const Film film = render_watched(scene, common, checkpoint);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    Image image = described_image(film, scene, options, common);
     image.attributes["seconds"] = fmt::format("{:.3f}", seconds);
+    if (const std::string errors = table_errors(tables); !errors.empty())
+        image.attributes["tables"] = errors;
     for (const std::filesystem::path& path : paths) {
         if (lower_extension(path) == ".exr")
             write_exr(image, path);
@@ -132,9 +170,14 @@ void run(const RenderOptions& options, const CommonOptions& common) {
             write_png(image, path);
         if (!common.quiet)
             fmt::print("{}: {} x {}, {} samples a pixel, relative noise {}, {:.1f} s{}\n",
-                       path.string(), image.width, image.height, samples, noise, seconds,
-                       interrupted ? ", interrupted" : "");
+                       path.string(), image.width, image.height, image.attributes["samples"],
+                       image.attributes["noise"], seconds,
+                       interrupted ? ", interrupted; --resume goes on" : "");
     }
+    if (!common.quiet)
+        fmt::print("{}", table_errors(tables));
+    if (!interrupted)
+        std::filesystem::remove(checkpoint.path);
 }
 
 } // namespace
@@ -160,6 +203,8 @@ void add_render_command(CLI::App& app, const CommonOptions& common) {
         ->add_option("--accuracy", options->accuracy,
                      "Accuracy of a cloth that is measured on the way (default 0.2)")
         ->check(CLI::PositiveNumber);
+    command->add_flag("--resume", options->resume,
+                      "Go on with a picture that was interrupted, from OUTPUT.part");
     command->callback([options, &common] { run(*options, common); });
 }
 

@@ -3,11 +3,43 @@
 #include "renderer/core/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
 #include <system_error>
 
 namespace rapport {
+namespace {
+
+thread_local InputLog* innermost_log = nullptr;
+
+/// Of all bytes, word by word (FNV-1a with the upper half folded in); the stream is left at its
+/// start.
+std::string hash_of(std::ifstream& stream) {
+    uint64_t hash = 0xcbf29ce484222325;
+    std::array<uint64_t, 8192> words;
+    do {
+        stream.read(reinterpret_cast<char*>(words.data()), sizeof words);
+        const auto count = static_cast<size_t>(stream.gcount());
+        const size_t rounded = (count + 7) / 8;
+        std::memset(reinterpret_cast<char*>(words.data()) + count, 0, rounded * 8 - count);
+        hash ^= count;
+        for (size_t i = 0; i < rounded; ++i) {
+            hash = (hash ^ words[i]) * 0x100000001b3;
+            hash ^= hash >> 32;
+        }
+    } while (stream);
+    stream.clear();
+    stream.seekg(0);
+    return fmt::format("{:016x}", hash);
+}
+
+} // namespace
+
+InputLog::InputLog() : outer_(innermost_log) { innermost_log = this; }
+InputLog::~InputLog() { innermost_log = outer_; }
 
 InputFile open_input(const std::filesystem::path& path) {
     std::error_code error;
@@ -28,6 +60,8 @@ InputFile open_input(const std::filesystem::path& path) {
     file.size = std::filesystem::file_size(path, error);
     if (error)
         throw FileError(path.string(), "", "a readable file", error.message());
+    if (innermost_log)
+        innermost_log->hashes_[path.filename().string()] += hash_of(file.stream) + ' ';
     return file;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 
 namespace rapport {
@@ -11,6 +12,25 @@ namespace rapport {
 struct InputFile {
     std::ifstream stream;
     uint64_t size = 0;
+};
+
+/// What this thread opens with `open_input` as long as the log lives, the innermost if there are
+/// several: by the names of the files without their folders, hashes of their bytes in the order of
+/// opening. Tells work on some files from work on others, wherever they lie.
+class InputLog {
+  public:
+    InputLog();
+    InputLog(const InputLog&) = delete;
+    InputLog& operator=(const InputLog&) = delete;
+    ~InputLog();
+
+    const std::map<std::string, std::string>& hashes() const { return hashes_; }
+
+  private:
+    friend InputFile open_input(const std::filesystem::path& path);
+
+    std::map<std::string, std::string> hashes_;
+    InputLog* outer_;
 };
 
 /// A file that is missing, unreadable, or no plain file (a folder, a device) is a FileError.

@@ -19,13 +19,15 @@ constexpr uint32_t reverse_bits(uint32_t x) {
 /// Van der Corput's radical inverse.
 constexpr uint32_t first_dimension(uint32_t index) { return reverse_bits(index); }
 
-/// Generator matrix: Pascal's triangle modulo 2, so each column follows from the one before.
+/// Generator matrix: Pascal's triangle modulo 2, whose entry (row r, column c) is 1 where the bits
+/// of r are among those of c (Lucas), the Kronecker power of [1 1; 0 1]: one step per bit of a row.
 constexpr uint32_t second_dimension(uint32_t index) {
-    uint32_t value = 0;
-    for (uint32_t column = 1u << 31; index != 0; index >>= 1, column ^= column >> 1)
-        if (index & 1)
-            value ^= column;
-    return value;
+    index ^= index >> 1 & 0x55555555u;
+    index ^= index >> 2 & 0x33333333u;
+    index ^= index >> 4 & 0x0F0F0F0Fu;
+    index ^= index >> 8 & 0x00FF00FFu;
+    index ^= index >> 16;
+    return reverse_bits(index);
 }
 
 /// A hash in which every bit of the result depends only on the same and lower bits of `x`: the

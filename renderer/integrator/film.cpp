@@ -3,7 +3,9 @@
 #include "renderer/core/parallel.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
+#include <stdexcept>
 
 namespace rapport {
 namespace {
@@ -51,6 +53,13 @@ void Film::clear(Tile& tile) {
         std::fill_n(pixels_.begin() + static_cast<ptrdiff_t>(index(tile.first.x, y)),
                     tile.end.x - tile.first.x, Pixel{});
     tile.samples = 0;
+}
+
+void Film::restore(std::span<const double> sums) {
+    static_assert(sizeof(Pixel) == kSums * sizeof(double));
+    if (sums.size() != kSums * pixels_.size())
+        throw std::invalid_argument("sums of a film of another size");
+    std::memcpy(static_cast<void*>(pixels_.data()), sums.data(), sums.size_bytes());
 }
 
 glm::dvec3 Film::Pixel::variance_of_mean(int samples) const {

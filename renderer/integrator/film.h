@@ -3,6 +3,7 @@
 #include "renderer/core/image.h"
 #include "renderer/core/math.h"
 
+#include <span>
 #include <vector>
 
 namespace rapport {
@@ -35,6 +36,13 @@ class Film {
     /// Takes a tile's samples back, so that a film can serve another picture.
     void clear(Tile& tile);
 
+    /// All sums, kSums of each pixel in rows from the top, as they are kept in a checkpoint beside
+    /// `Tile::samples`.
+    static constexpr size_t kSums = 17;
+    std::span<const std::byte> sums() const { return std::as_bytes(std::span(pixels_)); }
+    /// Takes up sums that were kept. Throws std::invalid_argument for another number of them.
+    void restore(std::span<const double> sums);
+
     /// Radiance of a tile, and the variance of its pixels' means as `image` estimates it, both in
     /// the mean over pixels and channels. No variance from fewer than two samples: infinite.
     struct Noise {
@@ -55,8 +63,7 @@ class Film {
   private:
     struct Pixel {
         glm::dvec3 radiance{0}, squares{0}, albedo{0}, normal{0}, warp{0};
-        double depth = 0;
-        int hits = 0;
+        double depth = 0, hits = 0;
 
         glm::dvec3 variance_of_mean(int samples) const;
     };

@@ -1,5 +1,7 @@
 #include "renderer/integrator/path.h"
 
+#include "renderer/integrator/folded_bsdf.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -26,7 +28,8 @@ struct Scattering {
 };
 
 /// Whether a direction lies on the same side by the geometry as by the shading frame. Where it
-/// does not, light would leak through a surface that is smooth only in its normals.
+/// does not, light would leak through a surface that is smooth only in its normals; FoldedBsdf has
+/// none there, except by rounding.
 bool sides_agree(const SurfacePoint& point, const glm::vec3& world, const glm::vec3& local) {
     return glm::dot(world, point.geometric_normal) * local.z > 0;
 }
@@ -60,7 +63,7 @@ bool survives(Rgb& throughput, Sampler& sampler) {
 
 /// Light scattered towards the eye out of one sampled direction of one sampled light.
 Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& frame,
-                 const glm::vec3& eye, Sampler& sampler) {
+                 const FoldedBsdf& bsdf, Sampler& sampler) {
     const auto choice = scene.choose_light(sampler.next_1d());
     if (!choice)
         return Rgb(0);
@@ -70,8 +73,7 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
     const glm::vec3 local = frame.to_local(light->direction);
     if (!sides_agree(point, light->direction, local))
         return Rgb(0);
-    const Bsdf& material = *point.surface->material;
-    const auto [scattered, pdf] = material.eval_and_pdf(eye, local);
+    const auto [scattered, pdf] = bsdf.eval_and_pdf(local);
     if (scattered == Rgb(0))
         return Rgb(0);
     const glm::vec3 origin = offset_origin(point, light->direction);
@@ -166,10 +168,11 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
         if (depth++ == scene.settings.max_depth)
             break;
 
-        path.radiance += throughput * direct_light(scene, *point, frame, eye, sampler);
+        const FoldedBsdf bsdf(material, eye, frame.to_local(point->geometric_normal));
+        path.radiance += throughput * direct_light(scene, *point, frame, bsdf, sampler);
 
         const float choice = sampler.next_1d();
-        const auto sample = material.sample(eye, choice, sampler.next_2d());
+        const auto sample = bsdf.sample(choice, sampler.next_2d());
         if (!sample)
             break;
         const glm::vec3 direction = glm::normalize(frame.to_world(sample->light));

@@ -1,10 +1,12 @@
 #include "renderer/integrator/path_tracer.h"
 
 #include "renderer/core/parallel.h"
+#include "renderer/integrator/checkpoint_file.h"
 #include "renderer/integrator/path.h"
 #include "renderer/integrator/sample_plan.h"
 
 #include <algorithm>
+#include <chrono>
 #include <fmt/format.h>
 #include <mutex>
 #include <stdexcept>
@@ -40,39 +42,68 @@ FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, in
 /// Brings tiles to the samples that are planned for each, all of them evenly.
 class Rendering {
   public:
-    Rendering(const Scene& scene, const RenderWatcher& watcher)
-        : film(scene.camera.resolution), scene_(scene), rays_(scene.camera), watcher_(watcher) {}
+    Rendering(const Scene& scene, const RenderWatcher& watcher, const RenderCheckpoint& checkpoint)
+        : film(scene.camera.resolution),
+          plan(film.tiles().size(), scene.settings.error > 0 ? kPilot : scene.settings.samples),
+          scene_(scene), rays_(scene.camera), watcher_(watcher), checkpoint_(checkpoint) {
+        if (!checkpoint.resume || !std::filesystem::exists(checkpoint.path))
+            return;
+        read_checkpoint(checkpoint, scene.settings, film, plan);
+        for (const Film::Tile& tile : film.tiles())
+            taken_ += static_cast<double>(tile.samples) * pixels(tile);
+    }
 
     /// False if it was stopped.
-    bool bring_to(const std::vector<int>& plan) {
+    bool carry_out_plan() {
         const int most = *std::ranges::max_element(plan);
         planned_ = 0;
         for (size_t i = 0; i < plan.size(); ++i)
             planned_ += static_cast<double>(plan[i]) * pixels(film.tiles()[i]);
-        if (film.tiles()[0].samples == 0)
-            pass(plan, 1);
+        pass(1);
         for (int samples = kPass; samples - kPass < most && !stopped(); samples += kPass)
-            pass(plan, samples);
-        return !stopped();
+            pass(samples);
+        if (!stopped())
+            return true;
+        save();
+        return false;
     }
 
     Film film;
+    std::vector<int> plan; ///< samples of each tile
 
   private:
+    using Clock = std::chrono::steady_clock;
+    static double seconds_since(Clock::time_point then) {
+        return std::chrono::duration<double>(Clock::now() - then).count();
+    }
     static double pixels(const Film::Tile& tile) {
         const glm::ivec2 size = tile.end - tile.first;
         return static_cast<double>(size.x) * size.y;
     }
     bool stopped() const { return watcher_.stopped && watcher_.stopped(); }
 
-    void pass(const std::vector<int>& plan, int samples) {
+    bool save_is_due() const {
+        return !checkpoint_.path.empty() &&
+               seconds_since(saved_) > std::max(1.0, kWorkPerSaving * saving_);
+    }
+
+    void pass(int samples) {
+        trace(samples);
+        while (save_is_due()) { // and hence some tiles may still wait
+            save();
+            trace(samples);
+        }
+    }
+
+    /// Samples tiles until all have what they should have by now, or it is time to save.
+    void trace(int samples) {
         std::vector<size_t> open;
         for (size_t i = 0; i < plan.size(); ++i)
             if (film.tiles()[i].samples < std::min(plan[i], samples))
                 open.push_back(i);
         parallel_for(open.size(), [&](size_t number) {
             Film::Tile& tile = film.tiles()[open[number]];
-            if (tile.samples > 0 && stopped())
+            if ((tile.samples > 0 && stopped()) || save_is_due())
                 return;
             const int start = tile.samples;
             sample_tile(scene_, rays_, film, tile, std::min(plan[open[number]], samples));
@@ -85,11 +116,23 @@ class Rendering {
         });
     }
 
+    void save() {
+        if (checkpoint_.path.empty())
+            return;
+        const Clock::time_point start = Clock::now();
+        write_checkpoint(checkpoint_, scene_.settings, film, plan);
+        saving_ = seconds_since(start);
+        saved_ = Clock::now();
+    }
+
     const Scene& scene_;
     const CameraRays rays_;
     const RenderWatcher& watcher_;
+    const RenderCheckpoint& checkpoint_;
     double planned_ = 0, taken_ = 0; ///< samples of all pixels
     std::mutex mutex_;
+    Clock::time_point saved_ = Clock::now();
+    double saving_ = 0; ///< seconds that the last checkpoint took
 };
 
 } // namespace
@@ -103,16 +146,14 @@ void sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::T
     tile.samples = until;
 }
 
-Film render(const Scene& scene, const RenderWatcher& watcher) {
-    Rendering rendering(scene, watcher);
-    const RenderSettings& settings = scene.settings;
-    std::vector<int> plan(rendering.film.tiles().size(),
-                          settings.error > 0 ? kPilot : settings.samples);
-    while (rendering.bring_to(plan) && settings.error > 0) {
-        std::vector<int> next = plan_samples(rendering.film, settings.error);
-        if (next == plan)
+Film render(const Scene& scene, const RenderWatcher& watcher, const RenderCheckpoint& checkpoint) {
+    Rendering rendering(scene, watcher, checkpoint);
+    const double error = scene.settings.error;
+    while (rendering.carry_out_plan() && error > 0) {
+        std::vector<int> next = plan_samples(rendering.film, error);
+        if (next == rendering.plan)
             break;
-        plan = std::move(next);
+        rendering.plan = std::move(next);
     }
     return std::move(rendering.film);
 }

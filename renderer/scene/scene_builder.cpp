@@ -53,7 +53,8 @@ class Builder {
     Scene build() {
         std::vector<std::shared_ptr<Light>> lights;
         for (const LightDescription& light : description_.lights)
-            lights.push_back(make_light(light.type, {light.params, base_dir_, light.to_world}));
+            lights.push_back(
+                make_light(light.type, {light.params, base_dir_, light.to_world, &warnings_}));
         std::vector<Surface> surfaces;
         for (const ShapeDescription& shape : description_.shapes)
             add_shape(shape, surfaces);

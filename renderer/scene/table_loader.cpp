@@ -11,20 +11,18 @@ TableLoader::TableLoader(double accuracy, uint64_t seed, Progress progress)
 std::shared_ptr<const TableBsdf> TableLoader::load(const std::filesystem::path& path,
                                                    const std::string& colourway) {
     auto& loaded = loaded_[{std::filesystem::weakly_canonical(path), colourway}];
-    if (!loaded)
-        loaded = std::make_shared<const TableBsdf>(
-            all_colourways(path)->in_colourway(colourway, path.string()), path.string());
-    return loaded;
+    if (!loaded.table)
+        loaded = {path,
+                  std::make_shared<const TableBsdf>(
+                      all_colourways(path)->in_colourway(colourway, path.string()), path.string())};
+    return loaded.table;
 }
 
 std::shared_ptr<const BsdfTable> TableLoader::all_colourways(const std::filesystem::path& path) {
-    auto& table = tables_[std::filesystem::weakly_canonical(path)];
-    if (table)
-        return table;
-    const bool stored = lower_extension(path) == ".bsdf";
-    table = std::make_shared<const BsdfTable>(stored ? read_table(path) : measure_file(path));
-    if (!stored)
-        measured_[path] = table;
+    auto& table = whole_[std::filesystem::weakly_canonical(path)];
+    if (!table)
+        table = std::make_shared<const BsdfTable>(
+            lower_extension(path) == ".bsdf" ? read_table(path) : measure_file(path));
     return table;
 }
 

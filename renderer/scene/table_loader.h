@@ -26,10 +26,14 @@ class TableLoader {
     std::shared_ptr<const TableBsdf> load(const std::filesystem::path& path,
                                           const std::string& colourway);
 
-    /// The tables measured so far, to be kept or reported.
-    const std::map<std::filesystem::path, std::shared_ptr<const BsdfTable>>& measured() const {
-        return measured_;
-    }
+    /// A table in one colourway, read or measured so far.
+    struct Loaded {
+        std::filesystem::path path; ///< as it was first asked for
+        std::shared_ptr<const TableBsdf> table;
+    };
+    /// By the file's canonical path and the colourway.
+    using Tables = std::map<std::pair<std::filesystem::path, std::string>, Loaded>;
+    const Tables& tables() const { return loaded_; }
 
   private:
     std::shared_ptr<const BsdfTable> all_colourways(const std::filesystem::path& path);
@@ -38,9 +42,8 @@ class TableLoader {
     double accuracy_;
     uint64_t seed_;
     Progress progress_;
-    std::map<std::filesystem::path, std::shared_ptr<const BsdfTable>> tables_, measured_;
-    std::map<std::pair<std::filesystem::path, std::string>, std::shared_ptr<const TableBsdf>>
-        loaded_;
+    std::map<std::filesystem::path, std::shared_ptr<const BsdfTable>> whole_;
+    Tables loaded_;
 };
 
 } // namespace rapport

@@ -49,6 +49,30 @@ TEST(Furnace, AConvexWhiteBodyVanishes) {
               4);
 }
 
+/// A cube with the normals of a sphere: up to 54° between shading and geometry.
+Surface rounded_cube(float reflectance) {
+    TriangleMesh mesh = tests::cube(0.7f);
+    for (const glm::vec3& p : mesh.positions)
+        mesh.normals.push_back(glm::normalize(p));
+    return tests::surface(std::move(mesh), tests::diffuse(reflectance));
+}
+
+TEST(Furnace, NormalsOtherThanThoseOfTheSurfaceLoseNoLight) {
+    const Measured even = mean_radiance(furnace({rounded_cube(1)}, 5));
+    EXPECT_NEAR(even.mean, 1, 1e-5);
+    // The same by light samples too: within a lamp all around.
+    const auto in_lamp = [](float reflectance) {
+        std::vector<Surface> surfaces{rounded_cube(reflectance),
+                                      tests::surface(tests::cube(20), tests::diffuse(0), 1)};
+        tests::turn_over(surfaces[1]);
+        return mean_radiance(Scene(std::move(surfaces), {},
+                                   tests::parallel_camera({3, 4, 5}, {0, 0, 0}, 1.5f, 32),
+                                   settings(256, 5)));
+    };
+    EXPECT_LT(std::abs(in_lamp(1).z(1)), 4);
+    EXPECT_GT(std::abs(in_lamp(0.98f).z(1)), 4);
+}
+
 TEST(Furnace, ManyBouncesBetweenWhiteWallsVanish) {
     std::vector<Surface> corner;
     for (const auto& [a, b] : {std::pair{glm::vec3(2, 0, 0), glm::vec3(0, 2, 0)},
@@ -77,6 +101,13 @@ TEST(Furnace, AClothThatAbsorbsNothingVanishes) {
     // The tabulated intensity keeps its bins' energy to about 1e-3.
     EXPECT_NEAR(mean_radiance(furnace(sheets(cloth(0.6)), 1000)).mean, 1, 3e-3);
     EXPECT_LT(mean_radiance(furnace(sheets(cloth(0.5)), 1000)).mean, 0.97);
+    std::vector<Surface> tilted = sheets(cloth(0.6));
+    for (Surface& sheet : tilted) {
+        TriangleMesh mesh = *sheet.mesh;
+        mesh.normals.assign(mesh.positions.size(), glm::normalize(glm::vec3(0.4f, -0.3f, 1)));
+        sheet.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
+    }
+    EXPECT_NEAR(mean_radiance(furnace(tilted, 1000)).mean, 1, 3e-3);
 }
 
 } // namespace

@@ -3,7 +3,9 @@
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 
+#include <csignal>
 #include <fcntl.h>
+#include <spawn.h>
 #include <stdexcept>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -38,6 +40,27 @@ ProgramRun run_executable(const std::string& program, const std::vector<std::str
     waitpid(child, &status, 0);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read_bytes(out),
             read_bytes(err)};
+}
+
+bool run_and_kill_program(std::vector<std::string> arguments, unsigned after) {
+    arguments.insert(arguments.begin(), RAPPORT_PROGRAM);
+    arguments.push_back("--quiet");
+    std::vector<char*> argv;
+    for (std::string& argument : arguments)
+        argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    pid_t child = 0;
+    if (posix_spawn(&child, RAPPORT_PROGRAM, nullptr, nullptr, argv.data(), environ) != 0)
+        throw std::runtime_error("cannot start " RAPPORT_PROGRAM);
+    if (after > 0) {
+        usleep(after);
+        kill(child, SIGKILL);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    if (!WIFSIGNALED(status) && WEXITSTATUS(status) != 0)
+        throw std::runtime_error(arguments[1] + " failed");
+    return WIFSIGNALED(status);
 }
 
 } // namespace rapport::tests

@@ -17,4 +17,8 @@ ProgramRun run_program(const std::vector<std::string>& arguments, const std::str
 ProgramRun run_executable(const std::string& program, const std::vector<std::string>& arguments,
                           const std::string& folder = ".");
 
+/// Runs `rapport` here, quietly, and kills it after so many microseconds, unless they are 0;
+/// whether that came before its end. A run that fails throws std::runtime_error.
+bool run_and_kill_program(std::vector<std::string> arguments, unsigned after);
+
 } // namespace rapport::tests

@@ -6,7 +6,10 @@
 #include "tests/support/small_scenes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 // A flat swatch under one disc of light of unit radiance and 5° half-angle, seen from afar. Its
 // pixels are L = ∫_disc f(light → eye) cosθ_light dω = ∫_disc I(eye → ω) dω by reciprocity: the
@@ -69,38 +72,60 @@ struct Estimate {
     double mean, variance;
 };
 
-/// Green radiance of the swatch, a level surface around the origin, over a square window of half
-/// width `half` [m]. The disc is so far away that all of the window sees it alike.
-inline Estimate seen_under_disc(Surface swatch, const glm::dvec3& eye, const glm::dvec3& light,
-                                float half, int samples, int max_depth,
-                                double half_angle = kDiscHalfAngle) {
+/// A disc of light and what it shines with.
+struct Disc {
+    glm::dvec3 light; ///< where its middle is
+    Rgb radiance{1};
+};
+
+/// Radiance of the swatch in R, G and B, a level surface around the origin, over a square window of
+/// half width `half` [m]. The discs are so far away that all of the window sees them alike.
+inline std::array<Estimate, 3> seen_under_discs(Surface swatch, const glm::dvec3& eye,
+                                                const std::vector<Disc>& discs, float half,
+                                                int samples, int max_depth,
+                                                double half_angle = kDiscHalfAngle) {
     constexpr int kEdges = 256, kPixels = 8;
     const float distance = 1e4f * half;
-    const glm::vec3 centre = distance * glm::vec3(light);
-    const Frame frame = Frame::about(-glm::vec3(light));
     const float radius = distance * static_cast<float>(std::tan(half_angle));
-    TriangleMesh disc;
-    disc.positions.push_back(centre);
-    for (int i = 0; i < kEdges; ++i) {
-        const float angle = 2 * kPi * i / kEdges;
-        disc.positions.push_back(centre +
-                                 radius * (std::cos(angle) * frame.x + std::sin(angle) * frame.y));
-        disc.triangles.push_back({0, 1 + i, 1 + (i + 1) % kEdges});
-    }
     std::vector<Surface> surfaces;
     surfaces.push_back(std::move(swatch));
-    surfaces.push_back(surface(disc, diffuse(0), 1));
+    for (const Disc& disc : discs) {
+        const glm::vec3 centre = distance * glm::vec3(disc.light);
+        const Frame frame = Frame::about(-glm::vec3(disc.light));
+        TriangleMesh mesh;
+        mesh.positions.push_back(centre);
+        for (int i = 0; i < kEdges; ++i) {
+            const float angle = 2 * kPi * i / kEdges;
+            mesh.positions.push_back(
+                centre + radius * (std::cos(angle) * frame.x + std::sin(angle) * frame.y));
+            mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % kEdges});
+        }
+        surfaces.push_back(surface(mesh, diffuse(0)));
+        surfaces.back().emission = disc.radiance;
+    }
     const Scene scene(std::move(surfaces), {},
                       parallel_camera(1e3f * half * glm::vec3(eye), {}, half, kPixels),
                       settings(samples, max_depth));
     const Image image = render(scene).image();
-    Estimate estimate{0, 0};
+    std::array<Estimate, 3> estimates{};
     constexpr int kCount = kPixels * kPixels;
-    for (int i = 0; i < kCount; ++i) {
-        estimate.mean += (*image.find("G"))[i] / kCount;
-        estimate.variance += (*image.find("variance.G"))[i] / (double(kCount) * kCount);
+    for (int c = 0; c < 3; ++c) {
+        const std::string channel(1, "RGB"[c]);
+        for (int i = 0; i < kCount; ++i) {
+            estimates[c].mean += (*image.find(channel))[i] / kCount;
+            estimates[c].variance +=
+                (*image.find("variance." + channel))[i] / (double(kCount) * kCount);
+        }
     }
-    return estimate;
+    return estimates;
+}
+
+/// The green one under a single disc.
+inline Estimate seen_under_disc(Surface swatch, const glm::dvec3& eye, const glm::dvec3& light,
+                                float half, int samples, int max_depth,
+                                double half_angle = kDiscHalfAngle) {
+    return seen_under_discs(std::move(swatch), eye, {{light}}, half, samples, max_depth,
+                            half_angle)[1];
 }
 
 } // namespace rapport::tests

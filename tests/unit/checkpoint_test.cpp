@@ -3,13 +3,11 @@
 #include "renderer/core/rng.h"
 #include "tests/support/fibre_assemblies.h"
 #include "tests/support/file_bytes.h"
+#include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 #include "vgsp/goniophotometer.h"
 
-#include <csignal>
 #include <gtest/gtest.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace rapport {
@@ -122,7 +120,6 @@ TEST_F(Checkpointed, WhatBelongsToAnotherRunIsRefused) {
 }
 
 TEST(Command, AKilledMeasurementIsResumedToTheSameBytes) {
-    ASSERT_EQ(access(RAPPORT_PROGRAM, X_OK), 0) << "the program is not built";
     const tests::TemporaryFolder folder;
     // Without a wanted color, whose paths would come before the first checkpoint.
     const std::string yarn = "section = 'parallel'\nfibres = 7\nwidth_um = 60\nheight_um = 60\n"
@@ -131,39 +128,20 @@ TEST(Command, AKilledMeasurementIsResumedToTheSameBytes) {
                                                  "weave = 'plain'\n[warp]\nends_per_cm = 60\n" +
                                                      yarn + "[weft]\npicks_per_cm = 60\n" + yarn)
                                   .string();
-    // Runs the program, killed after so many microseconds; the signal that ended it, or 0.
-    const auto vgsp = [&](const std::string& output, bool resume, useconds_t killed_after) {
-        std::vector<std::string> words{
-            RAPPORT_PROGRAM, "vgsp",           cloth,        "--incidence", "30,20",
-            "--side",        "front",          "--accuracy", "1e-3",        "--max-rays",
-            "100000",        "--realisations", "2",          "--quiet",     "-o",
-            output};
-        if (resume)
-            words.push_back("--resume");
-        std::vector<char*> arguments;
-        for (std::string& word : words)
-            arguments.push_back(word.data());
-        arguments.push_back(nullptr);
-        pid_t child = 0;
-        EXPECT_EQ(posix_spawn(&child, RAPPORT_PROGRAM, nullptr, nullptr, arguments.data(), environ),
-                  0);
-        if (killed_after > 0) {
-            usleep(killed_after);
-            kill(child, SIGKILL);
-        }
-        int status = 0;
-        waitpid(child, &status, 0);
-        EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
-        return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    };
     const std::string whole = (folder / "whole.bsdf").string();
     const std::string killed = (folder / "killed.bsdf").string();
-    ASSERT_EQ(vgsp(whole, false, 0), 0);
+    const auto vgsp = [&](const std::string& output, unsigned killed_after) {
+        return tests::run_and_kill_program({"vgsp", cloth, "--incidence", "30,20", "--side",
+                                            "front", "--accuracy", "1e-3", "--max-rays", "100000",
+                                            "--realisations", "2", "-o", output, "--resume"},
+                                           killed_after);
+    };
+    vgsp(whole, 0);
     int kills = 0;
     CounterRng rng(static_cast<uint64_t>(getpid()), Purpose::test, 0, 0);
     for (int i = 0; i < 3; ++i)
-        kills += vgsp(killed, true, 50'000 + static_cast<useconds_t>(1e6 * rng.uniform())) != 0;
-    ASSERT_EQ(vgsp(killed, true, 0), 0);
+        kills += vgsp(killed, 20'000 + static_cast<unsigned>(2e5 * rng.uniform()));
+    vgsp(killed, 0);
     EXPECT_EQ(tests::read_bytes(killed), tests::read_bytes(whole));
     EXPECT_FALSE(std::filesystem::exists(killed + ".part"));
     EXPECT_GT(kills, 0);

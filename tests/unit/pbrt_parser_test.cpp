@@ -95,6 +95,34 @@ TEST_F(PbrtParser, ComposesTransformations) {
     expect_near(glm::vec3(scene.camera.to_world[3]), {0, 0, -2});
 }
 
+TEST_F(PbrtParser, PlacesInstancesOfObjects) {
+    const SceneDescription scene = parse_world(R"(
+        Translate 0 0 1
+        ObjectBegin "pair"
+          Material "diffuse" "rgb reflectance" [.1 .2 .3]
+          Translate 1 0 0
+          Shape "sphere"
+          ReverseOrientation
+          Shape "disk"
+        ObjectEnd
+        Shape "plymesh"
+        AttributeBegin
+          Scale 2 2 2
+          ObjectInstance "pair"
+        AttributeEnd
+        ObjectInstance "pair")");
+    ASSERT_EQ(scene.shapes.size(), 5u); // an object alone shows nothing
+    EXPECT_EQ(scene.shapes[0].type, "plymesh");
+    EXPECT_EQ(scene.shapes[0].material, nullptr);
+    EXPECT_EQ(scene.shapes[2].type, "disk");
+    EXPECT_TRUE(scene.shapes[2].reverse_orientation);
+    EXPECT_FALSE(scene.shapes[1].reverse_orientation);
+    EXPECT_EQ(scene.shapes[4].material->type, "diffuse");
+    const auto origin_of = [&](size_t shape) { return glm::vec3(scene.shapes[shape].to_world[3]); };
+    expect_near(origin_of(1), {2, 0, 3}); // the instance's transform after that of the definition
+    expect_near(origin_of(4), {1, 0, 2});
+}
+
 TEST_F(PbrtParser, KeepsAttributesInTheirScope) {
     const SceneDescription scene = parse_world(R"(
         MakeNamedMaterial "body" "string type" "cloth" "string filename" "satin.bsdf"
@@ -174,6 +202,12 @@ TEST_F(PbrtParser, RefusesWithPlaceAndChoices) {
         {"WorldBegin\nNamedMaterial \"silk\"", "2:15", "none yet", "silk"},
         {"WorldBegin\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nNamedMaterial \"b\"",
          "3:15", "\"a\"", "b"},
+        {"WorldBegin\nObjectInstance \"a\"", "2:16", "none yet", "a"},
+        {"WorldBegin\nObjectBegin \"a\"\nObjectBegin \"b\"", "3:1", "ObjectEnd", "within"},
+        {"WorldBegin\nObjectBegin \"a\"\nObjectInstance \"a\"", "3:1", "ObjectEnd", "within"},
+        {"WorldBegin\nObjectBegin \"a\"", "2:16", "ObjectEnd", "end of the file"},
+        {"WorldBegin\nAreaLightSource \"diffuse\"\nObjectBegin \"a\"\nShape \"disk\"", "4:1",
+         "without area lights", "shines"},
         {"WorldBegin\nTexture \"a\" \"float\" \"imagemap\"", "2:13", "\"spectrum\"", "float"},
         {"WorldBegin\nTexture \"a\" \"spectrum\" \"checkerboard\"", "2:24", "\"imagemap\"",
          "checkerboard"},

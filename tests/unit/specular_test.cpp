@@ -9,6 +9,7 @@
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
+#include <limits>
 
 // Metal and glass, point and spot lights, spheres and disks: against what is known in closed form.
 
@@ -77,9 +78,50 @@ TEST(Dielectric, ReflectsAndRefractsByFresnelAndSnell) {
                     1e-6);
         EXPECT_EQ(through->weight, Rgb(1));
     }
-    EXPECT_THROW(material("dielectric", {number_param("float", "roughness", {0.1})}), FileError);
+    EXPECT_THROW(material("dielectric", {number_param("float", "roughness", {1.1})}), FileError);
+    EXPECT_THROW(material("dielectric", {number_param("float", "uroughness", {-1})}), FileError);
     EXPECT_THROW(material("dielectric", {number_param("float", "eta", {0})}), FileError);
     EXPECT_THROW(material("conductor", {number_param("rgb", "reflectance", {1, 1, 1})}), FileError);
+}
+
+TEST(Dielectric, RoughScatteringIsReciprocalAndNearSnellWhenSmooth) {
+    const auto rough = material("dielectric", {number_param("float", "uroughness", {0.3}),
+                                               number_param("float", "vroughness", {0.1})});
+    const glm::vec3 above = glm::normalize(glm::vec3(-0.6f, 0.1f, 0.5f));
+    const glm::vec3 below = glm::normalize(glm::vec3(-0.2f, 0.3f, -0.9f));
+    const float reflected = rough->eval(kEye, above).g / above.z;
+    EXPECT_GT(reflected, 0);
+    EXPECT_NEAR(rough->eval(above, kEye).g / kEye.z, reflected, 1e-5f * reflected);
+    // Radiance over the square of the index: f / n² of the light's side is the same both ways.
+    const float refracted = rough->eval(kEye, below).g / -below.z / square(1.5f);
+    EXPECT_GT(refracted, 0);
+    EXPECT_NEAR(rough->eval(below, kEye).g / kEye.z, refracted, 1e-5f * refracted);
+
+    const auto glass = material("dielectric", {});
+    const auto nearly = material(
+        "dielectric", {number_param("float", "roughness", {0.005}),
+                       {.type = "bool", .name = "remaproughness", .numbers = {0}, .strings = {}}});
+    for (const float side : {1.0f, -1.0f})
+        for (const float choice : {0.0f, 0.999f}) {
+            const glm::vec3 eye = glm::normalize(glm::vec3(0.2f, -0.3f, side));
+            for (const float u : {0.1f, 0.5f, 0.9f})
+                EXPECT_LT(glm::distance(nearly->sample(eye, choice, {u, u})->light,
+                                        glass->sample(eye, choice, {})->light),
+                          0.05f);
+        }
+    // Equal indices do nothing, however rough the boundary between them.
+    const auto none = material("dielectric", {number_param("float", "eta", {1}),
+                                              number_param("float", "roughness", {0.3})});
+    EXPECT_LT(glm::distance(none->sample(kEye, 0, {})->light, -kEye), 1e-6f);
+}
+
+TEST(Conductor, IsSmoothAlongItsGrooves) {
+    const auto brushed = material("conductor", {number_param("float", "uroughness", {0.01}),
+                                                number_param("float", "vroughness", {0.5})});
+    const float tilt = 0.4f;
+    const Rgb along = brushed->eval({0, 0, 1}, {std::sin(tilt), 0, std::cos(tilt)});
+    const Rgb across = brushed->eval({0, 0, 1}, {0, std::sin(tilt), std::cos(tilt)});
+    EXPECT_GT(across.g, 10 * along.g);
 }
 
 /// A scene file's picture: mean of R with its standard error.
@@ -159,6 +201,27 @@ TEST(PointLight, FallsOffWithTheSquareOfTheDistance) {
     const double middle =
         degrees(std::acos(0.5 * (std::cos(radians(30.0)) + std::cos(radians(25.0)))));
     EXPECT_NEAR(tilted(middle), spot.mean / 2, 0.05 * spot.mean);
+}
+
+TEST(ImageLight, IsBlackWhereItsFileIsNegativeAndSaysSo) {
+    const TemporaryFolder folder;
+    Image image(8, 4, {"R", "G", "B"});
+    for (auto& plane : image.data)
+        plane.assign(plane.size(), 1);
+    image.data[0][5] = image.data[1][5] = image.data[2][9] = -0.5f;
+    write_exr(image, folder / "sky.exr");
+    write_bytes(folder / "scene.pbrt",
+                "WorldBegin LightSource \"infinite\" \"string filename\" \"sky.exr\"");
+    std::vector<std::string> warnings;
+    const Scene scene = build_scene(parse_pbrt(folder / "scene.pbrt"), {}, warnings);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("in 2 of 32 pixels"), std::string::npos) << warnings[0];
+    for (const float z : {1.0f, 0.5f, 0.0f, -1.0f})
+        EXPECT_TRUE(glm::all(glm::greaterThanEqual(
+            scene.lights()[0]->escaped(glm::normalize(glm::vec3(0.3f, 0.4f, z))), Rgb(0))));
+    image.data[0][5] = std::numeric_limits<float>::quiet_NaN();
+    write_exr(image, folder / "sky.exr");
+    EXPECT_THROW(build_scene(parse_pbrt(folder / "scene.pbrt"), {}, warnings), FileError);
 }
 
 TEST(SpotLight, ItsPowerIsTheIntegralOfItsIntensity) {

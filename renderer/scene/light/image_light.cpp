@@ -4,6 +4,7 @@
 #include "renderer/core/octahedral.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <limits>
 
@@ -29,11 +30,11 @@ ImageLight::ImageLight(const LightContext& context)
     : to_world_(rotation_of(context.to_world, context.params)),
       from_world_(glm::transpose(to_world_)) {
     const std::string filename = context.params.get_string("filename", "");
-    read_pixels(context.params, context.base_dir / filename);
+    read_pixels(context, context.base_dir / filename);
     prepare_sampling();
 }
 
-void ImageLight::read_pixels(const Params& params, const std::filesystem::path& file) {
+void ImageLight::read_pixels(const LightContext& context, const std::filesystem::path& file) {
     const Image image = read_exr(file);
     width_ = image.width;
     height_ = image.height;
@@ -41,7 +42,7 @@ void ImageLight::read_pixels(const Params& params, const std::filesystem::path& 
     if (!octahedral_ && width_ != 2 * height_)
         throw FileError(file.string(), "", "a square or a 2:1 image as light",
                         fmt::format("{} × {} pixels", width_, height_));
-    const float scale = light_scale(params);
+    const float scale = light_scale(context.params);
     pixels_.resize(static_cast<size_t>(width_) * height_);
     static constexpr const char* kChannels[] = {"R", "G", "B"};
     for (int c = 0; c < 3; ++c) {
@@ -51,13 +52,21 @@ void ImageLight::read_pixels(const Params& params, const std::filesystem::path& 
                             fmt::format("no channel {}", kChannels[c]));
         for (size_t i = 0; i < pixels_.size(); ++i) {
             const float value = (*plane)[i] * scale;
-            if (!(value >= 0 && value < std::numeric_limits<float>::infinity()))
-                throw FileError(
-                    file.string(), fmt::format("pixel ({}, {})", i % width_, i / width_),
-                    "radiance that is finite and not negative", fmt::format("{}", value));
+            if (!std::isfinite(value))
+                throw FileError(file.string(),
+                                fmt::format("pixel ({}, {})", i % width_, i / width_),
+                                "radiance that is finite", fmt::format("{}", value));
             pixels_[i][c] = value;
         }
     }
+    size_t negative = 0;
+    for (Rgb& pixel : pixels_) {
+        negative += glm::any(glm::lessThan(pixel, Rgb(0)));
+        pixel = glm::max(pixel, Rgb(0));
+    }
+    if (negative > 0 && context.warnings)
+        context.warnings->push_back(fmt::format("{}: negative radiance set to 0 in {} of {} pixels",
+                                                file.string(), negative, pixels_.size()));
 }
 
 /// A cell's weight is the flux through it: solid angle × the mean luminance of the bilinear

@@ -13,8 +13,9 @@ namespace rapport {
 class ImageLight final : public Light {
   public:
     /// "string filename" and "float scale". FileError if the file is no such image, a pixel is
-    /// negative or not finite, or the transformation is more than a rotation, reflection and
-    /// uniform scale.
+    /// not finite, or the transformation is more than a rotation, reflection and
+    /// uniform scale. Negative pixels, which lossy compression leaves around bright ones,
+    /// become black, and are counted in a warning.
     explicit ImageLight(const LightContext& context);
 
     void prepare(const glm::vec3& scene_centre, float scene_radius) override;
@@ -30,7 +31,7 @@ class ImageLight final : public Light {
     /// Solid angle per unit area of the image [sr].
     double solid_angle(const glm::dvec2& position) const;
 
-    void read_pixels(const Params& params, const std::filesystem::path& file);
+    void read_pixels(const LightContext& context, const std::filesystem::path& file);
     void prepare_sampling();
     Rgb pixel(int x, int y) const; ///< at most one step outside the image
     Rgb lookup(const glm::dvec2& position) const;

@@ -9,6 +9,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace rapport {
 
@@ -52,6 +54,7 @@ struct LightContext {
     const Params& params;
     std::filesystem::path base_dir;
     glm::mat4 to_world;
+    std::vector<std::string>* warnings = nullptr; ///< told what was mended, if anybody listens
 };
 using LightFactory = std::function<std::shared_ptr<Light>(const LightContext&)>;
 using LightRegistry = Registry<LightFactory>;

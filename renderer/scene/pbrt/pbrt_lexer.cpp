@@ -1,19 +1,18 @@
 #include "renderer/scene/pbrt/pbrt_lexer.h"
 
+#include "renderer/core/input_file.h"
+
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
 #include <iterator>
 
 namespace rapport {
 namespace {
 
 std::string read_text(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in || std::filesystem::is_directory(file))
-        throw FileError(file.string(), "", "a pbrt scene file", "no file that can be read");
-    return {std::istreambuf_iterator<char>(in), {}};
+    InputFile input = open_input(file);
+    return {std::istreambuf_iterator<char>(input.stream), {}};
 }
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }

@@ -209,6 +209,34 @@ class Parser {
         return state;
     }
 
+    void object_begin() {
+        if (object_)
+            throw lexer_->error(directive_, "ObjectEnd", "an object within an object");
+        const PbrtToken token = lexer_->peek();
+        const std::string name = read_string("an object's name in quotes");
+        const auto [place, is_new] = objects_.try_emplace(name);
+        if (!is_new)
+            throw lexer_->error(token, "a new name", '"' + name + "\" for the second time");
+        object_ = &place->second;
+        saved_.push_back({"ObjectBegin", state_});
+    }
+    void object_end() {
+        state_ = pop("ObjectBegin");
+        object_ = nullptr;
+    }
+    void object_instance() {
+        if (object_)
+            throw lexer_->error(directive_, "ObjectEnd", "an instance within an object");
+        const PbrtToken token = lexer_->peek();
+        const auto found = objects_.find(read_string("an object's name in quotes"));
+        if (found == objects_.end())
+            throw lexer_->error(token, known("object", objects_));
+        for (const ShapeDescription& shape : found->second) {
+            scene_.shapes.push_back(shape);
+            scene_.shapes.back().to_world = glm::mat4(state_.ctm) * shape.to_world;
+        }
+    }
+
     void texture() {
         const PbrtToken token = lexer_->peek();
         const std::string name = read_string("a texture's name in quotes");
@@ -298,7 +326,10 @@ class Parser {
         shape.reverse_orientation = state_.reverse_orientation;
         shape.material = state_.material;
         shape.area_light = state_.area_light;
-        scene_.shapes.push_back(std::move(shape));
+        if (object_ && shape.area_light)
+            throw lexer_->error(directive_, "objects without area lights, as in pbrt",
+                                "a Shape that shines");
+        (object_ ? *object_ : scene_.shapes).push_back(std::move(shape));
     }
 
     SceneDescription scene_;
@@ -308,6 +339,8 @@ class Parser {
     std::vector<Saved> saved_;
     std::map<std::string, glm::dmat4> coordinate_systems_;
     std::map<std::string, std::shared_ptr<const TextureDescription>> textures_;
+    std::map<std::string, std::vector<ShapeDescription>> objects_;
+    std::vector<ShapeDescription>* object_ = nullptr; ///< that is being described
     int include_depth_ = 0;
     bool in_world_ = false;
 };
@@ -332,6 +365,9 @@ const std::vector<Parser::Directive>& Parser::directives() {
         {"MakeNamedMaterial", Phase::world, &P::make_named_material},
         {"Material", Phase::world, &P::material},
         {"NamedMaterial", Phase::world, &P::named_material},
+        {"ObjectBegin", Phase::world, &P::object_begin},
+        {"ObjectEnd", Phase::world, &P::object_end},
+        {"ObjectInstance", Phase::world, &P::object_instance},
         {"PixelFilter", Phase::options, &P::option<read_filter>},
         {"ReverseOrientation", Phase::world, &P::reverse_orientation},
         {"Rotate", Phase::any, &P::rotate},

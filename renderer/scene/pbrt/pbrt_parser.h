@@ -13,9 +13,9 @@ namespace rapport {
 /// also the default: pbrt's own, a Gaussian, correlates pixels); Integrator "path"; ColorSpace
 /// "srgb". After it: AttributeBegin/End, TransformBegin/End, Material, MakeNamedMaterial,
 /// NamedMaterial, Texture "spectrum" "imagemap" (for the reflectance of "diffuse"), LightSource,
-/// AreaLightSource "diffuse", Shape. Anywhere: LookAt, Translate,
-/// Rotate, Scale, Transform, ConcatTransform, Identity, CoordinateSystem, CoordSysTransform,
-/// ReverseOrientation, Include.
+/// AreaLightSource "diffuse", Shape, ObjectBegin/End, ObjectInstance (each instance is a copy and
+/// takes the memory of one). Anywhere: LookAt, Translate, Rotate, Scale, Transform,
+/// ConcatTransform, Identity, CoordinateSystem, CoordSysTransform, ReverseOrientation, Include.
 ///
 /// As in pbrt, camera space is left-handed when the world is taken as right-handed: x points right
 /// in the picture, y up, z into the scene, and LookAt's x is up × direction. Right-handed geometry
