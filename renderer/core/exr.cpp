@@ -2,6 +2,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/image.h"
 #include "renderer/core/input_file.h"
+#include "renderer/core/parallel.h"
 
 #include <ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -13,6 +14,7 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfVersion.h>
 #include <fmt/format.h>
 #include <stdexcept>
@@ -119,6 +121,8 @@ void write_exr(const Image& image, const std::filesystem::path& path) {
         frame.insert(image.channels[c],
                      Imf::Slice::Make(Imf::FLOAT, image.data[c].data(), header.dataWindow()));
     }
+    if (Imf::globalThreadCount() != thread_count()) // lines are compressed by all of them
+        Imf::setGlobalThreadCount(thread_count());
     write_stream_atomically(path, [&](std::ofstream& output) {
         Imf::StdOFStream stream(output, path.c_str());
         Imf::OutputFile file(stream, header);

@@ -124,7 +124,8 @@ ShapeDescription lamp(const std::filesystem::path& path, const Bounds& bounds,
 } // namespace
 
 SceneDescription describe_model(const std::filesystem::path& path, const glm::ivec2& resolution) {
-    const GltfModel model = read_gltf(path);
+    const auto shared = std::make_shared<const GltfModel>(read_gltf(path));
+    const GltfModel& model = *shared;
     if (std::ranges::all_of(model.parts,
                             [](const GltfPart& part) { return part.mesh.positions.empty(); }))
         throw FileError(path.string(), "", "a model with triangles", "none");
@@ -138,6 +139,7 @@ SceneDescription describe_model(const std::filesystem::path& path, const glm::iv
     ShapeDescription shape;
     shape.type = "gltf";
     shape.params = ParamsMaker(path, "the model").text("filename", path.filename().string()).done();
+    shape.model = shared;
     scene.shapes.push_back(std::move(shape));
     return scene;
 }

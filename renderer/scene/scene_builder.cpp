@@ -86,8 +86,8 @@ class Builder {
             return description_.camera.seen_length(to_world * glm::dvec4(a, 1),
                                                    to_world * glm::dvec4(b, 1));
         };
-        std::vector<ShapePart> parts =
-            make_shape(shape.type, {shape.params, base_dir_, needs_uvs, warnings_, seen_length});
+        std::vector<ShapePart> parts = make_shape(
+            shape.type, {shape.params, base_dir_, needs_uvs, warnings_, seen_length, shape.model});
         for (ShapePart& part : parts) {
             const MaterialPointer material = material_for(shape, part.material);
             if (material && part.mesh.uvs.empty() &&

@@ -16,6 +16,8 @@
 
 namespace rapport {
 
+struct GltfModel;
+
 struct TextureDescription {
     Params params;                  ///< of an "imagemap"
     std::filesystem::path base_dir; ///< file names are relative to it
@@ -45,6 +47,8 @@ struct ShapeDescription {
     /// then wear the base colour of their file, everything else pbrt's default, a grey diffuse.
     std::shared_ptr<const MaterialDescription> material;
     std::optional<Params> area_light; ///< of `AreaLightSource "diffuse"`
+    /// Of a "gltf" shape, what its file holds, if it was read already.
+    std::shared_ptr<const GltfModel> model = nullptr;
 };
 
 struct SceneDescription {

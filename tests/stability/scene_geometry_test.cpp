@@ -1,4 +1,5 @@
 #include "renderer/core/image.h"
+#include "renderer/core/octahedral.h"
 #include "renderer/integrator/path_tracer.h"
 #include "renderer/scene/mesh/subdivision.h"
 #include "renderer/scene/mesh/surface_frames.h"
@@ -159,21 +160,47 @@ TEST(InsideOut, ShowsTheOtherSide) {
     EXPECT_NEAR(plain.mean(), reversed.mean(), 4 * std::hypot(plain.error(), reversed.error()));
 }
 
-/// One pixel of the sky is 10⁶ times as bright as the others, as a sun is: sampled by luminance it
-/// makes no more noise than the rest.
-TEST(HotPixel, IsSampledByItsLight) {
-    constexpr int kWidth = 64, kHeight = 32;
-    Image image(kWidth, kHeight, {"R", "G", "B"});
+/// A sky of radiance 1 but for one pixel of radiance `hot`.
+std::shared_ptr<Light> sky_with_hot_pixel(int width, int height, size_t place, float hot) {
+    Image image(width, height, {"R", "G", "B"});
     for (auto& plane : image.data) {
         plane.assign(plane.size(), 1);
-        plane[8 * kWidth + 20] = 1e6f;
+        plane[place] = hot;
     }
     const tests::TemporaryFolder folder;
     write_exr(image, folder / "sky.exr");
     Params params("test", "infinite", 1);
     params.add({.type = "string", .name = "filename", .numbers = {}, .strings = {"sky.exr"}});
+    return make_light("infinite", {params, folder.path(), glm::mat4(1)});
+}
+
+Picture white_ground(const std::shared_ptr<Light>& sky) {
+    return Picture(Scene({tests::surface(tests::level_square(1, 0), tests::diffuse(1))}, {sky},
+                         tests::parallel_camera({0, 0, 2}, {0, 0, 0}, 0.9f, 32),
+                         tests::settings(64, 1)));
+}
+
+/// One pixel among 10⁶ shines with as much light as all others. In the square image pixels have
+/// equal solid angles, and what bilinear lookup spreads of one stays so near that it arrives from
+/// one direction.
+TEST(HotPixel, AmongAMillionIsSampledByItsLight) {
+    constexpr int kSize = 1024, kX = 768, kY = 512;
+    constexpr float kHot = 1e6f;
     const std::shared_ptr<Light> sky =
-        make_light("infinite", {params, folder.path(), glm::mat4(1)});
+        sky_with_hot_pixel(kSize, kSize, size_t{kY} * kSize + kX, kHot);
+    const glm::dvec3 towards = octahedral_to_sphere(glm::dvec2(kX + 0.5, kY + 0.5) / double{kSize});
+    const double radiance = 1 + (kHot - 1) * 4 / square(double{kSize}) * towards.z;
+    const Picture picture = white_ground(sky);
+    EXPECT_NEAR(picture.mean(), radiance, 4 * picture.error() + 1e-3 * radiance);
+    EXPECT_LT(std::sqrt(picture.mean("variance.G")) / picture.mean(), 0.15);
+    const Picture even = white_ground(sky_with_hot_pixel(kSize, kSize, 0, 1));
+    EXPECT_NEAR(even.mean(), 1, 4 * even.error() + 1e-3);
+}
+
+/// One pixel of the sky is 10⁶ times as bright as the others, as a sun is: sampled by luminance it
+/// makes no more noise than the rest.
+TEST(HotPixel, IsSampledByItsLight) {
+    const std::shared_ptr<Light> sky = sky_with_hot_pixel(64, 32, 8 * 64 + 20, 1e6f);
     // Irradiance on the level ground, by midpoints.
     constexpr int kSteps = 1024;
     double irradiance = 0;
@@ -184,9 +211,7 @@ TEST(HotPixel, IsSampledByItsLight) {
                           std::cos(theta) * std::sin(theta) * square(kPi) /
                           (2 * square(double{kSteps}));
         }
-    const Picture picture(Scene({tests::surface(tests::level_square(1, 0), tests::diffuse(1))},
-                                {sky}, tests::parallel_camera({0, 0, 2}, {0, 0, 0}, 0.9f, 32),
-                                tests::settings(64, 1)));
+    const Picture picture = white_ground(sky);
     EXPECT_NEAR(picture.mean(), irradiance / kPi, 4 * picture.error() + 1e-3 * irradiance);
     const double noise = std::sqrt(picture.mean("variance.G")) / picture.mean();
     // Flat cells sample the tent that bilinear lookup makes of a pixel: a deviation of about 1 per

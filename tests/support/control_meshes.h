@@ -83,10 +83,9 @@ inline std::vector<glm::uvec3> topology(const TriangleMesh& mesh) {
     IndexedMesh indexed;
     indexed.positions = mesh.positions;
     indexed.position_index = mesh.triangles;
-    CleaningReport report;
-    std::vector<glm::uvec3> triangles = clean(indexed, &report).position_index;
-    EXPECT_EQ(report.degenerate + report.repeated, 0u);
-    return triangles;
+    const CleanMesh merged(std::move(indexed));
+    EXPECT_EQ(merged.dropped.degenerate + merged.dropped.repeated, 0u);
+    return merged.position_index;
 }
 
 inline void expect_closed_manifold(const TriangleMesh& mesh) {

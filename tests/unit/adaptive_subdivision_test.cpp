@@ -101,6 +101,73 @@ TEST(AdaptiveSubdivision, CutsAndFlatFacesKeepTheirRates) {
     EXPECT_EQ(triple, 5u);
 }
 
+/// A disc of radius 1 and a tenth of that thick; each face is a fan with a ring round it.
+IndexedMesh thin_disc(uint32_t count) {
+    IndexedMesh mesh;
+    const auto add_ring = [&](double radius, float z) {
+        for (uint32_t i = 0; i < count; ++i) {
+            const double phi = 2 * kPi * i / count;
+            mesh.positions.emplace_back(radius * std::cos(phi), radius * std::sin(phi), z);
+        }
+    };
+    mesh.positions = {{0, 0, 0.1f}, {0, 0, 0}};
+    for (const auto& [radius, z] : {std::pair{0.8, 0.1f}, {1.0, 0.1f}, {1.0, 0.0f}, {0.8, 0.0f}})
+        add_ring(radius, z);
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t a = 2 + i, b = 2 + (i + 1) % count;
+        mesh.position_index.emplace_back(0, a, b);
+        for (uint32_t ring = 0; ring < 3 * count; ring += count) {
+            mesh.position_index.emplace_back(a + ring, a + ring + count, b + ring + count);
+            mesh.position_index.emplace_back(a + ring, b + ring + count, b + ring);
+        }
+        mesh.position_index.emplace_back(1, b + 3 * count, a + 3 * count);
+    }
+    return mesh;
+}
+
+/// The largest angle between a triangle's normal and one at its corners [degrees].
+double largest_tilt(const TriangleMesh& mesh) {
+    double least_cosine = 1;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const auto& p = mesh.positions;
+        const glm::dvec3 normal = glm::cross(glm::dvec3(p[t.y]) - glm::dvec3(p[t.x]),
+                                             glm::dvec3(p[t.z]) - glm::dvec3(p[t.x]));
+        for (int c = 0; c < 3; ++c)
+            least_cosine = std::min(least_cosine, glm::dot(normal, glm::dvec3(mesh.normals[t[c]])) /
+                                                      glm::length(normal));
+    }
+    return degrees(std::acos(least_cosine));
+}
+
+/// A rim that is thinner than a piece is long turns within one; where it is cut finer, normals and
+/// triangles face the same way.
+TEST(AdaptiveSubdivision, SharpTurnsAreCutFiner) {
+    const auto pieces = [](double length) {
+        return [length](const glm::dvec3& a, const glm::dvec3& b) {
+            return std::clamp(static_cast<int>(std::ceil(glm::distance(a, b) / length)), 1, 256);
+        };
+    };
+    const IndexedMesh disc = thin_disc(24);
+    SubdivisionOptions options;
+    options.rate = pieces(0.12);
+    const TriangleMesh coarse = subdivide(disc, options, "disc");
+    EXPECT_GT(largest_tilt(coarse), 50);
+    options.finest_rate = pieces(0.01);
+    const TriangleMesh fine = subdivide(disc, options, "disc");
+    EXPECT_LT(largest_tilt(fine), 31);
+    EXPECT_GT(fine.triangles.size(), coarse.triangles.size());
+    expect_closed_manifold(fine);
+    expect_sound(fine);
+    // No finer than asked for, and where nothing turns, not finer at all.
+    options.finest_rate = options.rate;
+    EXPECT_EQ(subdivide(disc, options, "disc").triangles, coarse.triangles);
+    const IndexedMesh ball = icosahedron();
+    options.finest_rate = nullptr;
+    const size_t triangles = subdivide(ball, options, "ball").triangles.size();
+    options.finest_rate = pieces(0.01);
+    EXPECT_EQ(subdivide(ball, options, "ball").triangles.size(), triangles);
+}
+
 TEST(AdaptiveSubdivision, TooManyTrianglesAreRefused) {
     const FileError error =
         refusal([] { subdivide(icosahedron(), options(60000, false), "globe"); });

@@ -175,8 +175,8 @@ TEST(Gltf, DegenerateTrianglesAreCounted) {
         std::vector<uint16_t>{0, 1, 2, 0, 2, 3, 1, 1, 2, 2, 0, 1}, tests::kUnsignedShort, "SCALAR");
     const GltfModel model = read(file.glb());
     EXPECT_EQ(model.parts.at(0).mesh.position_index.size(), 2u);
-    EXPECT_EQ(model.parts[0].dropped.degenerate, 1u);
-    EXPECT_EQ(model.parts[0].dropped.repeated, 1u);
+    EXPECT_EQ(model.parts[0].mesh.dropped.degenerate, 1u);
+    EXPECT_EQ(model.parts[0].mesh.dropped.repeated, 1u);
 }
 
 } // namespace

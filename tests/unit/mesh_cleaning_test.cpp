@@ -25,7 +25,7 @@ TEST(MeshCleaning, MergesByValueAndDropsTheUnused) {
     mesh.uvs = {{0, 0}, {1, 0}, {0, 1}, {1, 0}, {0, 1}, {1, 1}};
     mesh.position_index = {{1, 2, 3}, {5, 4, 6}};
     mesh.uv_index = {{0, 1, 2}, {4, 3, 5}};
-    const IndexedMesh merged = clean(mesh);
+    const CleanMesh merged(mesh);
     EXPECT_EQ(merged.positions.size(), 4u);
     EXPECT_EQ(merged.uvs.size(), 4u);
     EXPECT_EQ(merged.position_index, (std::vector<glm::uvec3>{{0, 1, 2}, {2, 1, 3}}));
@@ -39,7 +39,7 @@ TEST(MeshCleaning, UvsThatDifferStayApart) {
     mesh.uvs = {{0, 0}, {1, 0}, {0, 1}, {5, 0}, {5, 1}, {6, 1}};
     mesh.position_index = {{0, 1, 2}, {2, 1, 3}};
     mesh.uv_index = {{0, 1, 2}, {4, 3, 5}};
-    const IndexedMesh merged = clean(mesh);
+    const CleanMesh merged(mesh);
     EXPECT_EQ(merged.positions.size(), 4u);
     EXPECT_EQ(merged.uvs.size(), 6u);
 }
@@ -55,10 +55,9 @@ TEST(MeshCleaning, DropsWhatIsNoSurfaceAndCountsIt) {
                            {0, 1, 4}}; // a sliver, but with three different corners
     mesh.uvs = {{0, 0}, {1, 1}};
     mesh.uv_index = {{0, 0, 0}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {0, 0, 1}};
-    CleaningReport report;
-    const IndexedMesh cleaned = clean(mesh, &report);
-    EXPECT_EQ(report.degenerate, 2u);
-    EXPECT_EQ(report.repeated, 2u);
+    const CleanMesh cleaned(mesh);
+    EXPECT_EQ(cleaned.dropped.degenerate, 2u);
+    EXPECT_EQ(cleaned.dropped.repeated, 2u);
     EXPECT_EQ(cleaned.position_index, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 1, 3}}));
     EXPECT_EQ(cleaned.uv_index, (std::vector<glm::uvec3>{{0, 0, 0}, {0, 0, 1}}));
     EXPECT_EQ(cleaned.positions.size(), 4u); // (7, 7, 7) is used by nobody now

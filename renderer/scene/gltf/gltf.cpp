@@ -20,8 +20,8 @@ constexpr float kMaxCoordinate = 1e18f;
 
 class ModelReader {
   public:
-    explicit ModelReader(const std::filesystem::path& path)
-        : path_(path.string()), file_(load_gltf_file(path, model_.warnings)),
+    ModelReader(const std::filesystem::path& path, bool tangents)
+        : path_(path.string()), tangents_(tangents), file_(load_gltf_file(path, model_.warnings)),
           accessors_(file_, path_), nodes_(file_, path_), primitives_(file_.meshes.size()),
           colors_(file_.materials.size()) {}
 
@@ -70,7 +70,12 @@ class ModelReader {
             triangles_ += primitive.mesh.position_index.size();
             if (triangles_ > kMaxTriangles)
                 fail(place, fmt::format("at most {} triangles in all", kMaxTriangles), "more");
+            const bool turned = primitive.mirrored != (determinant < 0);
+            mirrored = mirrored || turned;
             GltfPart part;
+            part.mesh = transformed(primitive.mesh, to_world, turned, place);
+            if (part.mesh.position_index.empty())
+                continue;
             part.name = mesh.name.empty() ? fmt::format("meshes[{}]", node.mesh) : mesh.name;
             if (primitives.size() > 1)
                 part.name += fmt::format(".primitives[{}]", p);
@@ -78,10 +83,6 @@ class ModelReader {
                 part.material = file_.materials[static_cast<size_t>(material)].name;
                 part.base_color = color_of(material);
             }
-            part.dropped = primitive.dropped;
-            const bool turned = primitive.mirrored != (determinant < 0);
-            mirrored = mirrored || turned;
-            part.mesh = transformed(primitive.mesh, to_world, turned, place);
             model_.parts.push_back(std::move(part));
         }
         if (mirrored)
@@ -116,7 +117,7 @@ class ModelReader {
         std::vector<GltfPrimitive> primitives;
         for (size_t p = 0; p < source.size(); ++p)
             primitives.push_back(read_gltf_primitive(
-                file_, accessors_, source[p], pose, path_,
+                file_, accessors_, source[p], pose, tangents_, path_,
                 fmt::format("meshes[{}].primitives[{}]", mesh, p), model_.warnings));
         return primitives;
     }
@@ -135,6 +136,8 @@ class ModelReader {
             if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < kMaxCoordinate))
                 fail(place, "positions below 1e18 m", "larger ones");
         }
+        for (glm::vec3& warp : mesh.warps)
+            warp = glm::dmat3(to_world) * glm::dvec3(warp);
         const glm::dmat3 normal_map = glm::transpose(glm::inverse(glm::dmat3(to_world)));
         for (glm::vec3& n : mesh.normals) {
             const glm::dvec3 normal = normal_map * glm::dvec3(n);
@@ -153,6 +156,7 @@ class ModelReader {
     }
 
     std::string path_;
+    bool tangents_;
     GltfModel model_;
     tinygltf::Model file_;
     GltfAccessors accessors_;
@@ -164,6 +168,8 @@ class ModelReader {
 
 } // namespace
 
-GltfModel read_gltf(const std::filesystem::path& path) { return ModelReader(path).run(); }
+GltfModel read_gltf(const std::filesystem::path& path, bool tangents) {
+    return ModelReader(path, tangents).run();
+}
 
 } // namespace rapport

@@ -15,11 +15,11 @@ namespace {
 class PrimitiveReader {
   public:
     PrimitiveReader(const tinygltf::Model& model, const GltfAccessors& accessors,
-                    const tinygltf::Primitive& primitive, const GltfPose& pose,
+                    const tinygltf::Primitive& primitive, const GltfPose& pose, bool tangents,
                     const std::string& path, const std::string& place,
                     std::vector<std::string>& warnings)
-        : model_(model), accessors_(accessors), primitive_(primitive), pose_(pose), path_(path),
-          place_(place), warnings_(warnings) {}
+        : model_(model), accessors_(accessors), primitive_(primitive), pose_(pose),
+          tangents_(tangents), path_(path), place_(place), warnings_(warnings) {}
 
     GltfPrimitive run() {
         if (primitive_.mode >= 0 && primitive_.mode < TINYGLTF_MODE_TRIANGLES) {
@@ -49,15 +49,17 @@ class PrimitiveReader {
             add_morph_targets("NORMAL", mesh.normals);
         }
         read_uvs(mesh);
+        if (tangents_ && !mesh.uvs.empty() && !mesh.normals.empty())
+            read_warps(mesh);
         if (pose_.joints) {
-            const SkinReport skin = apply_gltf_skin(primitive_, accessors_, *pose_.joints, path_,
-                                                    place_, mesh.positions, mesh.normals);
+            const SkinReport skin =
+                apply_gltf_skin(primitive_, accessors_, *pose_.joints, path_, place_,
+                                mesh.positions, mesh.normals, mesh.warps);
             result.mirrored = skin.mirrored;
             if (skin.unweighted > 0)
                 warn(fmt::format("{} vertices hang on no joint of the skin and stay in place",
                                  skin.unweighted));
         }
-        mesh = clean(mesh, &result.dropped);
         return result;
     }
 
@@ -111,6 +113,22 @@ class PrimitiveReader {
                 fail(place, "UVs that stay finite when transformed", "an overflow");
         }
         mesh.uv_index = mesh.position_index;
+    }
+
+    /// The warp lies along the bitangent, the sign of which says on which side of the tangent it
+    /// is; that is +v, upwards in the texture.
+    void read_warps(IndexedMesh& mesh) const {
+        const int accessor = accessor_of("TANGENT");
+        if (accessor < 0)
+            return;
+        const std::string place = attribute_place("TANGENT");
+        const std::vector<glm::vec4> tangents = accessors_.vec4s(accessor, place);
+        check_count(place, tangents.size());
+        std::vector<glm::vec3> directions(tangents.begin(), tangents.end());
+        add_morph_targets("TANGENT", directions);
+        for (size_t v = 0; v < tangents.size(); ++v)
+            mesh.warps.push_back(std::copysign(1.0f, tangents[v].w) *
+                                 glm::cross(mesh.normals[v], directions[v]));
     }
 
     /// Adds the displacements of each morph target, times its weight, to an attribute.
@@ -171,6 +189,7 @@ class PrimitiveReader {
     const GltfAccessors& accessors_;
     const tinygltf::Primitive& primitive_;
     const GltfPose& pose_;
+    bool tangents_;
     const std::string& path_;
     const std::string& place_;
     std::vector<std::string>& warnings_;
@@ -180,9 +199,10 @@ class PrimitiveReader {
 
 GltfPrimitive read_gltf_primitive(const tinygltf::Model& model, const GltfAccessors& accessors,
                                   const tinygltf::Primitive& primitive, const GltfPose& pose,
-                                  const std::string& path, const std::string& place,
+                                  bool tangents, const std::string& path, const std::string& place,
                                   std::vector<std::string>& warnings) {
-    return PrimitiveReader(model, accessors, primitive, pose, path, place, warnings).run();
+    return PrimitiveReader(model, accessors, primitive, pose, tangents, path, place, warnings)
+        .run();
 }
 
 } // namespace rapport

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/scene/gltf/gltf_accessor.h"
-#include "renderer/scene/mesh/mesh_cleaning.h"
+#include "renderer/scene/mesh/mesh.h"
 
 namespace rapport {
 
@@ -12,19 +12,18 @@ struct GltfPose {
 };
 
 struct GltfPrimitive {
-    IndexedMesh mesh;
-    CleaningReport dropped;
+    IndexedMesh mesh;      ///< not cleaned
     bool mirrored = false; ///< turned inside out by its skin
 };
 
 /// Reads one primitive: triangles, strips and fans, indexed or not; morph targets at their weights;
 /// then moved by the skin, if there is one, else in the mesh's own space; UVs as gltf_material.h
-/// says, then v ← 1 − v; equal values merged and triangles without area dropped (mesh_cleaning.h).
-/// A primitive without triangles is empty. What is ignored goes to `warnings`, after `place`, which
+/// says, then v ← 1 − v; with `tangents`, warps from TANGENT and NORMAL, where it has them. A
+/// primitive without triangles is empty. What is ignored goes to `warnings`, after `place`, which
 /// also names the primitive in FileErrors.
 GltfPrimitive read_gltf_primitive(const tinygltf::Model& model, const GltfAccessors& accessors,
                                   const tinygltf::Primitive& primitive, const GltfPose& pose,
-                                  const std::string& path, const std::string& place,
+                                  bool tangents, const std::string& path, const std::string& place,
                                   std::vector<std::string>& warnings);
 
 } // namespace rapport

@@ -86,7 +86,7 @@ Influences read_influences(const tinygltf::Primitive& primitive, const GltfAcces
 SkinReport apply_gltf_skin(const tinygltf::Primitive& primitive, const GltfAccessors& accessors,
                            const std::vector<glm::dmat4>& joints, const std::string& path,
                            const std::string& place, std::vector<glm::vec3>& positions,
-                           std::vector<glm::vec3>& normals) {
+                           std::vector<glm::vec3>& normals, std::vector<glm::vec3>& warps) {
     const Influences influences =
         read_influences(primitive, accessors, positions.size(), joints.size(), path, place);
     SkinReport report;
@@ -113,6 +113,8 @@ SkinReport apply_gltf_skin(const tinygltf::Primitive& primitive, const GltfAcces
         mirrored += determinant < 0 ? 1 : 0;
         if (!normals.empty() && determinant != 0)
             normals[v] = glm::transpose(glm::inverse(linear)) * glm::dvec3(normals[v]);
+        if (!warps.empty())
+            warps[v] = linear * glm::dvec3(warps[v]);
     }
     report.mirrored = 2 * mirrored > positions.size();
     return report;

@@ -16,12 +16,12 @@ struct SkinReport {
     bool mirrored = false; ///< most vertices lie in joints that turn the mesh inside out
 };
 
-/// Moves vertices, and turns their normals where there are any, by the mean of their joints'
-/// matrices, weighted as the primitive says (JOINTS_n and WEIGHTS_n, for all n; weights are scaled
-/// to sum to 1). `place` names the primitive in FileErrors.
+/// Moves vertices, and turns their normals and warps where there are any, by the mean of their
+/// joints' matrices, weighted as the primitive says (JOINTS_n and WEIGHTS_n, for all n; weights are
+/// scaled to sum to 1). `place` names the primitive in FileErrors.
 SkinReport apply_gltf_skin(const tinygltf::Primitive& primitive, const GltfAccessors& accessors,
                            const std::vector<glm::dmat4>& joints, const std::string& path,
                            const std::string& place, std::vector<glm::vec3>& positions,
-                           std::vector<glm::vec3>& normals);
+                           std::vector<glm::vec3>& normals, std::vector<glm::vec3>& warps);
 
 } // namespace rapport

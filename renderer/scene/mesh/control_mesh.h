@@ -20,6 +20,9 @@ struct Face {
     uint32_t triangle() const { return side[0] / 3; }
 };
 
+/// How the limit surface over a face is parametrised (limit_surface.h).
+enum class FaceKind { triangle, quad, quartered_triangle /**< of Catmull & Clark's surface */ };
+
 /// What is subdivided: a clean mesh, cut to a manifold, and where its limit surface is not smooth.
 struct ControlMesh {
     const IndexedMesh& mesh;
@@ -35,6 +38,12 @@ struct ControlMesh {
 
     uint32_t vertex(uint32_t side) const {
         return cut.triangles[side / 3][static_cast<int>(side % 3)];
+    }
+    FaceKind kind(const Face& face) const {
+        if (face.size == 4)
+            return FaceKind::quad;
+        return !has_quads || detached[face.triangle()] ? FaceKind::triangle
+                                                       : FaceKind::quartered_triangle;
     }
     glm::dvec3 position(uint32_t side) const {
         return mesh.positions[mesh.position_index[side / 3][static_cast<int>(side % 3)]];

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <array>
-#include <glm/glm.hpp>
+#include "renderer/scene/mesh/control_mesh.h"
+
 #include <map>
-#include <vector>
 
 namespace rapport {
 
@@ -19,14 +18,17 @@ struct FacePattern {
 /// inside following the sides (OpenSubdiv's Bfr); made when first asked for.
 class FacePatterns {
   public:
-    enum class Kind { triangle, quad, quartered_triangle /**< of Catmull & Clark's surface */ };
     using Rates = std::array<int, 4>; ///< the last is 0 for a triangle
 
-    const FacePattern& get(Kind kind, const Rates& rates);
+    const FacePattern& get(FaceKind kind, const Rates& rates);
 
   private:
-    std::map<std::pair<Kind, Rates>, FacePattern> made_;
-    const std::pair<const std::pair<Kind, Rates>, FacePattern>* last_ = nullptr;
+    std::map<std::pair<FaceKind, Rates>, FacePattern> made_;
+    const std::pair<const std::pair<FaceKind, Rates>, FacePattern>* last_ = nullptr;
 };
+
+/// Shares of a face's corners in the point at `parameter`, such that they are linear along its
+/// sides; they sum to 1.
+glm::dvec4 corner_shares(FaceKind kind, const glm::dvec2& parameter);
 
 } // namespace rapport

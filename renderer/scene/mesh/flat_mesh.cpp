@@ -34,8 +34,22 @@ TriangleMesh flat_mesh(const IndexedMesh& mesh) {
                 result.normals.back() = away ? -unit : unit;
             }
         }
-    if (has_uvs)
+    if (!has_uvs)
+        return result;
+    if (mesh.warps.empty()) {
         add_frames(result);
+        return result;
+    }
+    std::vector<char> sound(result.positions.size());
+    result.weft.resize(sound.size());
+    result.warp.resize(sound.size());
+    for (const auto& [key, vertex] : vertices) {
+        const WeftWarp frame = weft_across(mesh.warps[key[1]], result.normals[vertex]);
+        result.weft[vertex] = frame.weft;
+        result.warp[vertex] = frame.warp;
+        sound[vertex] = frame.sound;
+    }
+    repair_frames(result, std::move(sound));
     return result;
 }
 

@@ -14,7 +14,9 @@ struct TriangleMesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals; ///< unit shading normals, face side
     std::vector<glm::vec2> uvs;
-    std::vector<glm::vec3> weft, warp; ///< ∂P/∂u and ∂P/∂v of the surface, not orthogonalised
+    /// ∂P/∂u and ∂P/∂v of the surface, not orthogonalised; with an IndexedMesh's `warps`, unit
+    /// vectors.
+    std::vector<glm::vec3> weft, warp;
     std::vector<glm::uvec3> triangles; ///< counter-clockwise seen from the face side
 };
 
@@ -23,6 +25,9 @@ struct TriangleMesh {
 struct IndexedMesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec2> uvs; ///< v upwards
+    /// Where the warp runs, if that is not for the UVs to say: empty, or for each UV a vector of
+    /// any length.
+    std::vector<glm::vec3> warps;
     std::vector<glm::vec3> normals;
     std::vector<glm::uvec3> position_index; ///< per triangle
     std::vector<glm::uvec3> uv_index;       ///< per triangle; empty when there are no UVs

@@ -1,9 +1,12 @@
 #include "renderer/scene/mesh/mesh_cleaning.h"
 
+#include "renderer/core/parallel.h"
+
 #include <algorithm>
 #include <bit>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace rapport {
 namespace {
@@ -37,49 +40,68 @@ class FlatIndex {
     std::vector<uint32_t> slots_;
 };
 
-template <glm::length_t N> uint64_t hash_of(const glm::vec<N, float>& value) {
-    uint64_t hash = 0;
+template <glm::length_t N> uint64_t hash_of(const glm::vec<N, float>& value, uint64_t hash) {
     for (glm::length_t i = 0; i < N; ++i)
         hash = mix(hash, std::bit_cast<uint32_t>(value[i]));
     return hash;
 }
 
-/// Keeps the values that the index uses, in the order of first use. `name_of(kept, next)` says
-/// under which number the value `kept[next]` goes: `next`, or that of an equal one, which then
-/// stands for it.
-template <class Value, class NameOf>
-void renumber(std::vector<Value>& values, std::vector<glm::uvec3>& index, const NameOf& name_of) {
-    std::vector<Value> kept;
-    kept.reserve(values.size());
-    std::vector<uint32_t> renamed(values.size(), kNone);
+/// Renumbers what an index points to, `count` things, in the order of first use. `name_of(old,
+/// next)` says under which number `old` goes: `next`, or that of an equal one, which then stands
+/// for it. Returns the old numbers of those that are kept.
+template <class NameOf>
+std::vector<uint32_t> renumber(size_t count, std::vector<glm::uvec3>& index,
+                               const NameOf& name_of) {
+    std::vector<uint32_t> kept, renamed(count, kNone);
+    kept.reserve(count);
     for (glm::uvec3& triangle : index)
         for (int c = 0; c < 3; ++c) {
             uint32_t& name = renamed[triangle[c]];
             if (name == kNone) {
-                const Value value = values[triangle[c]] + 0.0f; // −0 becomes +0
                 const auto next = static_cast<uint32_t>(kept.size());
-                kept.push_back(value);
+                kept.push_back(triangle[c]);
                 name = name_of(kept, next);
                 if (name != next)
                     kept.pop_back();
             }
             triangle[c] = name;
         }
-    values = std::move(kept);
+    return kept;
 }
 
-template <class Value>
-void merge_equal(std::vector<Value>& values, std::vector<glm::uvec3>& index) {
-    FlatIndex known(values.size());
-    renumber(values, index, [&](const std::vector<Value>& kept, uint32_t next) {
-        return known.find_or_add(hash_of(kept[next]), next,
-                                 [&](uint32_t other) { return kept[other] == kept[next]; });
-    });
+template <class Value> void keep(std::vector<Value>& values, const std::vector<uint32_t>& kept) {
+    std::vector<Value> result;
+    result.reserve(kept.size());
+    for (const uint32_t old : kept)
+        result.push_back(values[old]);
+    values = std::move(result);
 }
 
-template <class Value>
-void drop_unused(std::vector<Value>& values, std::vector<glm::uvec3>& index) {
-    renumber(values, index, [](const auto&, uint32_t next) { return next; });
+/// Merges what has equal values in all of `values`, arrays of one length.
+template <class... Values> void merge_equal(std::vector<glm::uvec3>& index, Values&... values) {
+    const size_t count = std::max({values.size()...});
+    const auto drop_signs = [](auto& array) { // −0 becomes +0
+        for (auto& value : array)
+            value += 0.0f;
+    };
+    (drop_signs(values), ...);
+    FlatIndex known(count);
+    const std::vector<uint32_t> kept =
+        renumber(count, index, [&](const std::vector<uint32_t>& kept, uint32_t next) {
+            const uint32_t old = kept[next];
+            uint64_t hash = 0;
+            ((hash = values.empty() ? hash : hash_of(values[old], hash)), ...);
+            return known.find_or_add(hash, next, [&](uint32_t other) {
+                return (... && (values.empty() || values[kept[other]] == values[old]));
+            });
+        });
+    ((values.empty() ? void() : keep(values, kept)), ...);
+}
+
+template <class... Values> void drop_unused(std::vector<glm::uvec3>& index, Values&... values) {
+    const std::vector<uint32_t> kept = renumber(std::max({values.size()...}), index,
+                                                [](const auto&, uint32_t next) { return next; });
+    ((values.empty() ? void() : keep(values, kept)), ...);
 }
 
 glm::uvec3 sorted(glm::uvec3 t) {
@@ -89,12 +111,17 @@ glm::uvec3 sorted(glm::uvec3 t) {
 
 } // namespace
 
-IndexedMesh clean(const IndexedMesh& mesh, CleaningReport* report) {
-    IndexedMesh merged = mesh;
-    merge_equal(merged.positions, merged.position_index);
+CleanMesh::CleanMesh(IndexedMesh mesh) : IndexedMesh(std::move(mesh)) {
+    parallel_for(3, [&](size_t kind) {
+        if (kind == 0)
+            merge_equal(position_index, positions);
+        else if (kind == 1)
+            merge_equal(uv_index, uvs, warps);
+        else
+            merge_equal(normal_index, normals);
+    });
 
-    CleaningReport dropped;
-    const std::vector<glm::uvec3>& triangles = merged.position_index;
+    const std::vector<glm::uvec3>& triangles = position_index;
     FlatIndex seen(triangles.size());
     size_t kept = 0;
     for (size_t t = 0; t < triangles.size(); ++t) {
@@ -111,23 +138,22 @@ IndexedMesh clean(const IndexedMesh& mesh, CleaningReport* report) {
             ++dropped.repeated;
             continue;
         }
-        merged.position_index[kept] = triangle;
-        if (!merged.uv_index.empty())
-            merged.uv_index[kept] = merged.uv_index[t];
-        if (!merged.normal_index.empty())
-            merged.normal_index[kept] = merged.normal_index[t];
+        position_index[kept] = triangle;
+        if (!uv_index.empty())
+            uv_index[kept] = uv_index[t];
+        if (!normal_index.empty())
+            normal_index[kept] = normal_index[t];
         ++kept;
     }
-    merged.position_index.resize(kept);
-    merged.uv_index.resize(mesh.uv_index.empty() ? 0 : kept);
-    merged.normal_index.resize(mesh.normal_index.empty() ? 0 : kept);
+    position_index.resize(kept);
+    uv_index.resize(uv_index.empty() ? 0 : kept);
+    normal_index.resize(normal_index.empty() ? 0 : kept);
 
-    drop_unused(merged.positions, merged.position_index);
-    merge_equal(merged.uvs, merged.uv_index);
-    merge_equal(merged.normals, merged.normal_index);
-    if (report)
-        *report = dropped;
-    return merged;
+    if (dropped.degenerate + dropped.repeated == 0)
+        return;
+    drop_unused(position_index, positions);
+    drop_unused(uv_index, uvs, warps);
+    drop_unused(normal_index, normals);
 }
 
 std::vector<EdgeUse> edge_uses(std::span<const glm::uvec3> triangles) {

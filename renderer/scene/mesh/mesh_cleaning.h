@@ -6,18 +6,25 @@
 
 namespace rapport {
 
-/// What `clean` dropped.
+/// What cleaning dropped.
 struct CleaningReport {
     size_t degenerate = 0; ///< triangles with two corners at one point
     size_t repeated =
         0; ///< triangles over the same three points as an earlier one, either way round
 };
 
-/// The mesh with equal values merged (positions, UVs and normals each; equal means every coordinate
-/// is, with −0 = +0), without values that nobody uses, and without triangles that make no surface.
-/// Slivers with three different corners stay: dropping one would open a hole. Of two coincident
-/// sheets the first stays, since light cannot tell which it meets. Order is otherwise kept.
-IndexedMesh clean(const IndexedMesh& mesh, CleaningReport* report = nullptr);
+/// A mesh with equal values merged (positions, UVs with their warps, and normals each; equal means
+/// every coordinate is, with −0 = +0), without values that nobody uses, and without triangles that
+/// make no surface. Slivers with three different corners stay: dropping one would open a hole. Of
+/// two coincident sheets the first stays, since light cannot tell which it meets. Order is
+/// otherwise kept.
+class CleanMesh : public IndexedMesh {
+  public:
+    CleanMesh() = default;
+    CleanMesh(IndexedMesh mesh); ///< cleans it
+
+    CleaningReport dropped;
+};
 
 /// One side of a triangle: the edge from its corner `corner` to the next.
 struct EdgeUse {

@@ -2,7 +2,9 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
+#include "renderer/scene/mesh/face_pattern.h"
 #include "renderer/scene/mesh/limit_surface.h"
+#include "renderer/scene/mesh/sharp_turns.h"
 #include "renderer/scene/mesh/surface_frames.h"
 
 #include <algorithm>
@@ -56,6 +58,10 @@ size_t separate_mirrored_faces(IndexedMesh& mesh) {
     if (mirrored > 0) {
         mesh.uvs.resize(2 * size_t{offset});
         std::copy_n(mesh.uvs.begin(), offset, mesh.uvs.begin() + offset);
+        if (!mesh.warps.empty()) {
+            mesh.warps.resize(2 * size_t{offset});
+            std::copy_n(mesh.warps.begin(), offset, mesh.warps.begin() + offset);
+        }
     }
     return mirrored;
 }
@@ -78,12 +84,9 @@ std::optional<glm::dvec3> position_on_cut(const ControlMesh& control,
 
 /// Limit points of all vertices. Triangles of faces that turn out to have no limit surface are
 /// added to `flat`, and the result is then not valid.
-std::vector<LimitPoint> limit_points(const ControlMesh& control, const Tessellation& tessellation,
-                                     std::vector<char>& flat) {
+std::vector<LimitPoint> limit_points(const ControlMesh& control, const LimitSurface* surface,
+                                     const Tessellation& tessellation, std::vector<char>& flat) {
     std::vector<LimitPoint> points(tessellation.vertices.size());
-    std::unique_ptr<const LimitSurface> surface;
-    if (control.cut.attached_vertices > 0)
-        surface = std::make_unique<LimitSurface>(control);
     const size_t faces = control.faces.size();
     parallel_for((faces + kFacesPerBatch - 1) / kFacesPerBatch, [&](size_t batch) {
         std::vector<glm::vec2> parameters;
@@ -110,9 +113,9 @@ std::vector<LimitPoint> limit_points(const ControlMesh& control, const Tessellat
     return points;
 }
 
-/// Positions, normals, UVs and frames from limit points. Returns the number of mended frames.
-size_t fill_vertices(TriangleMesh& result, const Tessellation& tessellation,
-                     const std::vector<LimitPoint>& points, bool has_uvs) {
+/// Positions and normals from limit points; `result` has its triangles.
+void fill_shape(TriangleMesh& result, const Tessellation& tessellation,
+                const std::vector<LimitPoint>& points) {
     const size_t count = points.size();
     result.positions.resize(count);
     result.normals.resize(count);
@@ -133,16 +136,34 @@ size_t fill_vertices(TriangleMesh& result, const Tessellation& tessellation,
             if (!has_normal[i])
                 result.normals[i] = smooth[tessellation.vertices[i].normal];
     }
-    if (!has_uvs)
-        return 0;
+}
+
+/// The mesh's warps, interpolated over the face to which a vertex belongs.
+glm::dvec3 given_warp(const ControlMesh& control, const Tessellation::Vertex& vertex) {
+    const Face& face = control.faces[vertex.face];
+    const glm::dvec4 shares = corner_shares(control.kind(face), vertex.parameter);
+    glm::dvec3 warp(0);
+    for (uint32_t i = 0; i < face.size; ++i)
+        warp +=
+            shares[static_cast<int>(i)] * glm::dvec3(control.mesh.warps[control.uv(face.side[i])]);
+    return warp;
+}
+
+/// UVs and frames. Returns the number of mended frames.
+size_t fill_frames(TriangleMesh& result, const ControlMesh& control,
+                   const Tessellation& tessellation, const std::vector<LimitPoint>& points) {
+    const size_t count = points.size();
     result.uvs.resize(count);
     result.weft.resize(count);
     result.warp.resize(count);
     std::vector<char> sound(count);
     for (size_t i = 0; i < count; ++i) {
         const LimitPoint& p = points[i];
+        const glm::dvec3 normal = result.normals[i];
         const WeftWarp frame =
-            weft_warp(p.position_s, p.position_t, p.uv_s, p.uv_t, result.normals[i]);
+            control.mesh.warps.empty()
+                ? weft_warp(p.position_s, p.position_t, p.uv_s, p.uv_t, normal)
+                : weft_across(given_warp(control, tessellation.vertices[i]), normal);
         result.uvs[i] = p.uv;
         result.weft[i] = frame.weft;
         result.warp[i] = frame.warp;
@@ -165,13 +186,12 @@ EdgeRate uniform_rate(int level) {
     return [level](const glm::dvec3&, const glm::dvec3&) { return level; };
 }
 
-TriangleMesh subdivide(const IndexedMesh& input, const SubdivisionOptions& options,
+TriangleMesh subdivide(const CleanMesh& input, const SubdivisionOptions& options,
                        const std::string& name, SubdivisionReport* report) {
     const bool has_uvs = !input.uv_index.empty();
     if (options.need_uvs && !has_uvs)
         throw FileError(name, "", "UVs (TEXCOORD_0) for the cloth", "none");
-    CleaningReport dropped;
-    IndexedMesh mesh = clean(input, &dropped);
+    IndexedMesh mesh = input;
     SubdivisionReport counts;
     counts.mirrored = separate_mirrored_faces(mesh);
     std::vector<char> flat = faces_at_crowded_vertices(mesh);
@@ -179,28 +199,41 @@ TriangleMesh subdivide(const IndexedMesh& input, const SubdivisionOptions& optio
     for (bool complete = false; !complete;) {
         const ControlMesh control =
             make_control_mesh(mesh, flat, {options.crease_angle, options.quads});
-        std::optional<Tessellation> tessellation = tessellate(control, options.rate, kMaxTriangles);
-        if (!tessellation)
-            throw FileError(name, "",
-                            fmt::format("a subdivision into at most {} triangles", kMaxTriangles),
-                            "more");
-        const std::vector<LimitPoint> points = limit_points(control, *tessellation, flat);
-        complete = flat == control.detached;
+        std::unique_ptr<const LimitSurface> surface;
+        if (control.cut.attached_vertices > 0)
+            surface = std::make_unique<LimitSurface>(control);
+        SideRates rates = side_rates(control, options.rate);
+        std::optional<Tessellation> tessellation;
+        std::vector<LimitPoint> points;
+        do {
+            tessellation = tessellate(control, rates, kMaxTriangles);
+            if (!tessellation)
+                throw FileError(
+                    name, "", fmt::format("a subdivision into at most {} triangles", kMaxTriangles),
+                    "more");
+            points = limit_points(control, surface.get(), *tessellation, flat);
+            complete = flat == control.detached;
+            if (!complete)
+                break;
+            result.triangles = tessellation->triangles;
+            fill_shape(result, *tessellation, points);
+        } while (options.finest_rate &&
+                 refine_sharp_turns(control, *tessellation, result, options.finest_rate, rates));
         if (!complete)
             continue;
         counts.non_manifold_edges = control.cut.non_manifold_edges;
         counts.t_junctions = control.t_junctions;
         counts.creases = count_creases(control);
         counts.quads = mesh.position_index.size() - control.faces.size();
-        result.triangles = std::move(tessellation->triangles);
-        counts.frames_repaired = fill_vertices(result, *tessellation, points, has_uvs);
+        if (has_uvs)
+            counts.frames_repaired = fill_frames(result, control, *tessellation, points);
     }
     if (options.need_uvs && counts.frames_repaired > 0 &&
         counts.frames_repaired == result.positions.size())
         throw FileError(name, "", "UVs (TEXCOORD_0) that cover an area", "none that do");
 
     counts.faces = mesh.position_index.size();
-    counts.dropped = dropped.degenerate + dropped.repeated;
+    counts.dropped = input.dropped.degenerate + input.dropped.repeated;
     counts.unrefinable = static_cast<size_t>(std::count(flat.begin(), flat.end(), 1));
     if (report)
         *report = counts;

@@ -11,6 +11,8 @@ EdgeRate uniform_rate(int level);
 
 struct SubdivisionOptions {
     EdgeRate rate = uniform_rate(1);
+    /// Up to which edges are cut finer where the surface turns sharply (sharp_turns.h); none: not.
+    EdgeRate finest_rate = nullptr;
     double crease_angle = kPi; ///< see ControlMeshOptions; π: no creases
     bool quads = false;        ///< see ControlMeshOptions
     bool need_uvs = false;     ///< a mesh without UVs, or whose UVs cover no area, is a FileError
@@ -34,13 +36,15 @@ struct SubdivisionReport {
 /// also between faces that are cut unequally; UV seams double vertices with equal positions and
 /// normals, creases those with equal positions. `weft` and `warp` are the derivatives of the limit
 /// surface along u and v, and empty without UVs; on mirrored UVs weft is reversed so that cloth is
-/// never mirrored face-out (warp stays +v). `name` is for FileErrors.
-TriangleMesh subdivide(const IndexedMesh& mesh, const SubdivisionOptions& options,
+/// never mirrored face-out (warp stays +v). Where the mesh has warps, these are interpolated over
+/// its faces instead, and weft lies across. `name` is for FileErrors.
+TriangleMesh subdivide(const CleanMesh& mesh, const SubdivisionOptions& options,
                        const std::string& name, SubdivisionReport* report = nullptr);
 
 /// The mesh as it is, not subdivided: one vertex for each combination of position, UV and normal
 /// that occurs. Normals are the file's, on the face side; without them the mean of the triangles
-/// around the position. With UVs, weft and warp from the triangles' constant derivatives.
+/// around the position. With UVs, weft and warp from the triangles' constant derivatives, or from
+/// the mesh's warps.
 TriangleMesh flat_mesh(const IndexedMesh& mesh);
 
 } // namespace rapport

@@ -72,6 +72,15 @@ WeftWarp weft_warp(const glm::dvec3& position_s, const glm::dvec3& position_t,
     return {weft, warp, true};
 }
 
+WeftWarp weft_across(const glm::dvec3& warp, const glm::dvec3& normal) {
+    const glm::dvec3 flat = warp - glm::dot(warp, normal) * normal;
+    const double length = glm::length(flat);
+    if (!is_usable(length) || !(length > kLeastSine * glm::length(warp)))
+        return {{}, {}, false};
+    const glm::dvec3 unit = flat / length;
+    return {glm::cross(unit, normal), unit, true};
+}
+
 size_t repair_frames(TriangleMesh& mesh, std::vector<char> sound) {
     const size_t repaired = static_cast<size_t>(std::count(sound.begin(), sound.end(), 0));
     if (repaired == 0)

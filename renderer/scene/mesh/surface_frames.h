@@ -18,6 +18,10 @@ struct WeftWarp {
 WeftWarp weft_warp(const glm::dvec3& position_s, const glm::dvec3& position_t,
                    const glm::dvec2& uv_s, const glm::dvec2& uv_t, const glm::dvec3& normal);
 
+/// The frame of unit vectors whose warp is `warp`, brought into the tangent plane of the unit
+/// vector `normal`; not sound if it has no part there.
+WeftWarp weft_across(const glm::dvec3& warp, const glm::dvec3& normal);
+
 /// Gives each vertex whose frame is not `sound` that of the nearest sound vertex along the edges of
 /// the mesh, turned into its own tangent plane; pieces without any sound vertex take a frame about
 /// the normal. Returns how many were mended. The mesh needs normals.

@@ -22,26 +22,19 @@ struct CornerVertex {
 
 class Tessellator {
   public:
-    Tessellator(const ControlMesh& control, const EdgeRate& rate)
+    Tessellator(const ControlMesh& control, const SideRates& rates)
         : control_(control), edge_of_side_(3 * control.cut.triangles.size()),
           last_corner_(control.cut.origin.size(), kNone) {
         for_each_edge(control.edges, [&](std::span<const EdgeUse> uses) {
             for (const EdgeUse& use : uses)
                 edge_of_side_[3 * use.triangle + use.corner] = static_cast<uint32_t>(edges_.size());
-            // Pieces of an edge that was cut must be cut alike: the order is that of the uncut one.
-            uint32_t a = uses[0].low, b = uses[0].high;
-            if (control.cut.origin[a] > control.cut.origin[b])
-                std::swap(a, b);
-            const auto position = [&](uint32_t vertex) {
-                return glm::dvec3(control.mesh.positions[control.cut.origin[vertex]]);
-            };
-            edges_.emplace_back().rate = static_cast<uint16_t>(rate(position(a), position(b)));
+            edges_.emplace_back().rate = rates[3 * uses[0].triangle + uses[0].corner];
         });
     }
 
     std::optional<Tessellation> run(size_t max_triangles) {
         for (face_ = 0; face_ < control_.faces.size(); ++face_) {
-            result_.first.push_back(static_cast<uint32_t>(result_.vertices.size()));
+            begin_face();
             const Face& face = control_.faces[face_];
             // Before the pattern is made: its triangles are about as many at most.
             const size_t most = square(size_t{finest_rate(face)});
@@ -49,11 +42,16 @@ class Tessellator {
                 return std::nullopt;
             add_face(face);
         }
-        result_.first.push_back(static_cast<uint32_t>(result_.vertices.size()));
+        begin_face();
         return std::move(result_);
     }
 
   private:
+    void begin_face() {
+        result_.first.push_back(static_cast<uint32_t>(result_.vertices.size()));
+        result_.first_triangle.push_back(static_cast<uint32_t>(result_.triangles.size()));
+    }
+
     uint16_t finest_rate(const Face& face) const {
         uint16_t finest = 1;
         for (uint32_t i = 0; i < face.size; ++i)
@@ -65,12 +63,7 @@ class Tessellator {
         FacePatterns::Rates rates{};
         for (uint32_t i = 0; i < face.size; ++i)
             rates[i] = edges_[edge_of_side_[face.side[i]]].rate;
-        using Kind = FacePatterns::Kind;
-        const bool is_loop = !control_.has_quads || control_.detached[face.triangle()];
-        return patterns_.get(face.size == 4 ? Kind::quad
-                             : is_loop      ? Kind::triangle
-                                            : Kind::quartered_triangle,
-                             rates);
+        return patterns_.get(control_.kind(face), rates);
     }
 
     void add_face(const Face& face) {
@@ -156,9 +149,28 @@ class Tessellator {
 
 } // namespace
 
-std::optional<Tessellation> tessellate(const ControlMesh& control, const EdgeRate& rate,
+uint16_t pieces_of(const ControlMesh& control, std::span<const EdgeUse> edge,
+                   const EdgeRate& rate) {
+    // Pieces of an edge that was cut must be cut alike: the order is that of the uncut one.
+    uint32_t a = control.cut.origin[edge[0].low], b = control.cut.origin[edge[0].high];
+    if (a > b)
+        std::swap(a, b);
+    return static_cast<uint16_t>(rate(control.mesh.positions[a], control.mesh.positions[b]));
+}
+
+SideRates side_rates(const ControlMesh& control, const EdgeRate& rate) {
+    SideRates rates(3 * control.cut.triangles.size());
+    for_each_edge(control.edges, [&](std::span<const EdgeUse> edge) {
+        const uint16_t pieces = pieces_of(control, edge, rate);
+        for (const EdgeUse& use : edge)
+            rates[3 * use.triangle + use.corner] = pieces;
+    });
+    return rates;
+}
+
+std::optional<Tessellation> tessellate(const ControlMesh& control, const SideRates& rates,
                                        size_t max_triangles) {
-    return Tessellator(control, rate).run(max_triangles);
+    return Tessellator(control, rates).run(max_triangles);
 }
 
 } // namespace rapport

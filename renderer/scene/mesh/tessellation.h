@@ -21,9 +21,10 @@ struct Tessellation {
         uint16_t step = 0, rate = 1; ///< it lies step/rate along that side; step 0 is the corner
         glm::vec2 parameter{0};      ///< in the face's limit surface
     };
-    std::vector<Vertex> vertices;      ///< those of one face together, faces in order
-    std::vector<uint32_t> first;       ///< per face: its first vertex; and the end
-    std::vector<glm::uvec3> triangles; ///< faces in order
+    std::vector<Vertex> vertices;         ///< those of one face together, faces in order
+    std::vector<uint32_t> first;          ///< per face: its first vertex; and the end
+    std::vector<glm::uvec3> triangles;    ///< faces in order
+    std::vector<uint32_t> first_triangle; ///< per face; and the end
 };
 
 inline constexpr int kMaxRate = std::numeric_limits<uint16_t>::max();
@@ -32,8 +33,14 @@ inline constexpr int kMaxRate = std::numeric_limits<uint16_t>::max();
 /// positions in one order for all faces on the edge.
 using EdgeRate = std::function<int(const glm::dvec3&, const glm::dvec3&)>;
 
+/// Per side of the control mesh: how many pieces its edge is cut into.
+using SideRates = std::vector<uint16_t>;
+SideRates side_rates(const ControlMesh& control, const EdgeRate& rate);
+/// The same for one edge.
+uint16_t pieces_of(const ControlMesh& control, std::span<const EdgeUse> edge, const EdgeRate& rate);
+
 /// Nothing if it took more than `max_triangles`.
-std::optional<Tessellation> tessellate(const ControlMesh& control, const EdgeRate& rate,
+std::optional<Tessellation> tessellate(const ControlMesh& control, const SideRates& rates,
                                        size_t max_triangles);
 
 } // namespace rapport

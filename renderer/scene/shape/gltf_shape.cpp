@@ -1,12 +1,15 @@
 #include "renderer/core/error.h"
 #include "renderer/scene/gltf/gltf.h"
 #include "renderer/scene/mesh/auto_uvs.h"
+#include "renderer/scene/mesh/strain.h"
 #include "renderer/scene/mesh/subdivision.h"
+#include "renderer/scene/mesh/uv_scale.h"
 #include "renderer/scene/shape/shape.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
 namespace rapport {
 namespace {
@@ -18,6 +21,10 @@ constexpr float kDefaultEdgeLength = 4;
 /// Into how many pieces an edge is cut at most, also right before the camera.
 constexpr int kHighestRate = 256;
 constexpr float kDefaultCreaseAngle = 30; ///< [degrees]
+/// Where the surface turns sharply, edges are cut down to this length [pixels].
+constexpr float kShortestEdge = 0.5f;
+/// Strain that is told: lengths by more than this factor, angles by more than this [rad].
+constexpr double kNotableStretch = 1.1, kNotableShear = radians(10.0);
 
 /// What was mended, in one line.
 std::string summary(const CleaningReport& dropped, const SubdivisionReport& counts) {
@@ -35,29 +42,37 @@ std::string summary(const CleaningReport& dropped, const SubdivisionReport& coun
     return line;
 }
 
+/// As many pieces as make each be seen under so many pixels at most.
+EdgeRate rate_by_sight(const ShapeContext& context, float pixels) {
+    return [seen = context.seen_length, pixels](const glm::dvec3& a, const glm::dvec3& b) {
+        const double pieces = std::ceil(seen(a, b) / pixels); // infinite at the camera
+        return static_cast<int>(std::clamp(pieces, 1.0, double{kHighestRate}));
+    };
+}
+
 /// How finely edges are cut: "integer level" pieces each, or as "float edgelength" asks.
-EdgeRate edge_rate(const ShapeContext& context) {
+void set_rates(const ShapeContext& context, SubdivisionOptions& options) {
     const Params& params = context.params;
     const float pixels = params.get_float("edgelength", kDefaultEdgeLength);
     if (!(pixels > 0))
         params.fail("edgelength", "a length above 0 pixels", fmt::format("{}", pixels));
-    if (!params.has("level"))
-        return [seen = context.seen_length, pixels](const glm::dvec3& a, const glm::dvec3& b) {
-            const double pieces = std::ceil(seen(a, b) / pixels); // infinite at the camera
-            return static_cast<int>(std::clamp(pieces, 1.0, double{kHighestRate}));
-        };
+    if (!params.has("level")) {
+        options.rate = rate_by_sight(context, pixels);
+        options.finest_rate = rate_by_sight(context, kShortestEdge);
+        return;
+    }
     if (params.has("edgelength"))
         params.fail("level", "either level or edgelength", "both");
     const int level = params.get_int("level", 0);
     if (level < 0 || level > kHighestLevel)
         params.fail("level", fmt::format("a number from 0 to {}", kHighestLevel),
                     std::to_string(level));
-    return uniform_rate(level);
+    options.rate = uniform_rate(level);
 }
 
 SubdivisionOptions subdivision(const ShapeContext& context) {
     SubdivisionOptions options;
-    options.rate = edge_rate(context);
+    set_rates(context, options);
     const float angle = context.params.get_float("creaseangle", kDefaultCreaseAngle);
     if (!(angle >= 0 && angle <= 180))
         context.params.fail("creaseangle", "an angle from 0 to 180 degrees",
@@ -67,14 +82,55 @@ SubdivisionOptions subdivision(const ShapeContext& context) {
     return options;
 }
 
-TriangleMesh refine(const GltfPart& part, const SubdivisionOptions& options, bool flat,
-                    const std::string& name, std::vector<std::string>& warnings) {
-    if (flat && options.need_uvs && part.mesh.uv_index.empty())
+/// Metres of cloth to a unit of UV, if the scene says so.
+std::optional<double> stated_uv_scale(const Params& params) {
+    const double scale = params.get_float("uvscale", 1);
+    if (!params.has("uvscale"))
+        return std::nullopt;
+    if (!(scale > 0))
+        params.fail("uvscale", "a length above 0 m", fmt::format("{}", scale));
+    return scale;
+}
+
+/// How the cloth is strained where it lies on a part, in words; nothing where that is little, and
+/// nobody has asked.
+std::string strain_told(const std::optional<double>& stated_scale, const IndexedMesh& part,
+                        const TriangleMesh& mesh) {
+    const double scale = stated_scale.value_or(metres_per_uv(part));
+    if (!(scale > 0))
+        return "";
+    const Strain found = strain(mesh, scale);
+    const auto is_notable = [](const Strain::Range& range) {
+        return range.high > kNotableStretch || range.low * kNotableStretch < 1;
+    };
+    const double shear = std::max(-found.shear.low, found.shear.high);
+    if (!stated_scale && !is_notable(found.weft) && !is_notable(found.warp) &&
+        shear < kNotableShear)
+        return "";
+    return fmt::format("with {:.3g} m to a unit of UV the cloth lies stretched by {:.2f} to {:.2f} "
+                       "along the weft and {:.2f} to {:.2f} along the warp, sheared by {:.0f}° to "
+                       "{:.0f}°, in 90 % of its area",
+                       scale, found.weft.low, found.weft.high, found.warp.low, found.warp.high,
+                       degrees(found.shear.low), degrees(found.shear.high));
+}
+
+TriangleMesh refine(const CleanMesh& part, const ShapeContext& context,
+                    const SubdivisionOptions& options, const std::string& name) {
+    const bool flat = context.params.has("level") && context.params.get_int("level", 0) == 0;
+    const bool by_tangents = context.params.get_bool("tangents", false);
+    if (flat && options.need_uvs && part.uv_index.empty())
         throw FileError(name, "", "UVs, along which the cloth lies", "none");
     SubdivisionReport counts;
-    TriangleMesh mesh = flat ? flat_mesh(part.mesh) : subdivide(part.mesh, options, name, &counts);
-    if (const std::string mended = summary(part.dropped, counts); !mended.empty())
-        warnings.push_back(fmt::format("{}: {}", name, mended));
+    TriangleMesh mesh = flat ? flat_mesh(part) : subdivide(part, options, name, &counts);
+    if (options.need_uvs && by_tangents && part.warps.empty())
+        throw FileError(name, "", "TANGENT and NORMAL attributes, along which the cloth lies",
+                        "none");
+    std::vector<std::string> told{summary(part.dropped, counts)};
+    if (options.need_uvs && !by_tangents)
+        told.push_back(strain_told(stated_uv_scale(context.params), part, mesh));
+    for (const std::string& line : told)
+        if (!line.empty())
+            context.warnings.push_back(fmt::format("{}: {}", name, line));
     return mesh;
 }
 
@@ -88,8 +144,14 @@ TriangleMesh refine(const GltfPart& part, const SubdivisionOptions& options, boo
 ///     "bool quads"        joins pairs of triangles that were quads before they were exported, and
 ///                         subdivides by Catmull & Clark's rules instead of Loop's; default false
 ///     "bool autouv"       gives parts without UVs some (auto_uvs.h), so that a cloth can lie on
-///     them;
-///                         default false: it is an error there
+///                         them; default false: it is an error there
+///     "bool tangents"     warp and weft follow the file's TANGENT and NORMAL attributes instead of
+///                         the UVs: weft along the tangent, warp along the bitangent; default false
+///     "float uvscale"     metres of cloth to a unit of UV: how the cloth is strained on the model
+///                         is told by it. A measured cloth looks the same at any scale, so it
+///                         changes no picture. Default: what the cloth is least strained by, as
+///                         `rapport info` tells it; strain is then told where it is more than a
+///                         tenth, or 10° of shear
 std::vector<ShapePart> make_gltf(const ShapeContext& context) {
     const Params& params = context.params;
     const std::string filename = params.get_string("filename", "");
@@ -97,21 +159,29 @@ std::vector<ShapePart> make_gltf(const ShapeContext& context) {
         params.fail("filename", "\"string filename\" of a .gltf or .glb", "none");
     SubdivisionOptions options = subdivision(context);
     const bool auto_uvs = params.get_bool("autouv", false);
-    const bool flat = params.has("level") && params.get_int("level", 0) == 0;
+    const bool tangents = params.get_bool("tangents", false);
+    stated_uv_scale(params); // refuses a bad one, whether a part wears a cloth or not
     const std::filesystem::path path = context.base_dir / filename;
-    GltfModel model = read_gltf(path);
-    for (const std::string& warning : model.warnings)
+    const auto model = context.model && !tangents
+                           ? context.model
+                           : std::make_shared<const GltfModel>(read_gltf(path, tangents));
+    for (const std::string& warning : model->warnings)
         context.warnings.push_back(fmt::format("{}: {}", path.string(), warning));
     std::vector<ShapePart> parts;
-    for (GltfPart& part : model.parts) {
-        if (auto_uvs && part.mesh.uv_index.empty()) {
-            add_auto_uvs(part.mesh);
-            part.base_color.picture = nullptr; // it was not made for these
-        }
+    for (const GltfPart& part : model->parts) {
         options.need_uvs = context.needs_uvs(part.material);
-        parts.push_back({refine(part, options, flat,
-                                fmt::format("{}: {}", path.string(), part.name), context.warnings),
-                         part.material, part.base_color});
+        const std::string name = fmt::format("{}: {}", path.string(), part.name);
+        BaseColor base_color = part.base_color;
+        if (auto_uvs && part.mesh.uv_index.empty()) {
+            IndexedMesh mesh = part.mesh;
+            add_auto_uvs(mesh);
+            CleanMesh merged(std::move(mesh));
+            merged.dropped = part.mesh.dropped;
+            base_color.picture = nullptr; // it was not made for these
+            parts.push_back({refine(merged, context, options, name), part.material, base_color});
+        } else {
+            parts.push_back({refine(part.mesh, context, options, name), part.material, base_color});
+        }
     }
     return parts;
 }

@@ -13,6 +13,7 @@
 namespace rapport {
 
 class FibreSwatch;
+struct GltfModel;
 
 /// A piece of a shape that wears one material.
 struct ShapePart {
@@ -34,6 +35,7 @@ struct ShapeContext {
     /// Under how many pixels the camera sees the segment between two points of the shape's space
     /// (Camera::seen_length).
     std::function<double(const glm::dvec3&, const glm::dvec3&)> seen_length;
+    std::shared_ptr<const GltfModel> model; ///< ShapeDescription's
 };
 
 using ShapeFactory = std::function<std::vector<ShapePart>(const ShapeContext&)>;
