@@ -47,16 +47,4 @@ std::vector<BinPlane> reconstruct(const DirectionMesh& mesh, const ExitBins& exi
     return planes;
 }
 
-glm::vec2 sample_plane(float a, float b, const glm::vec2& u) {
-    // Inverts the distribution of the density (1 + s·x)/2: s·x² + 2x + (2 − s − 4u) = 0, by the
-    // form of the root that does not cancel as s → 0.
-    const auto sample_slope = [](float s, float u) {
-        const float c = 2 - s - 4 * u;
-        return std::clamp(-c / (1 + safe_sqrt(1 - s * c)), -1.0f, 1.0f);
-    };
-    const float xi = sample_slope(a, u.x);
-    const float density = std::max(1 + a * xi, 1e-6f);
-    return {xi, sample_slope(std::clamp(b / density, -1.0f, 1.0f), u.y)};
-}
-
 } // namespace rapport

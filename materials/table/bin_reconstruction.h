@@ -1,6 +1,7 @@
 #pragma once
 
 #include "materials/table/direction_mesh.h"
+#include "materials/table/float4.h"
 #include "renderer/core/bands.h"
 
 #include <span>
@@ -25,7 +26,13 @@ struct BinPlane {
 std::vector<BinPlane> reconstruct(const DirectionMesh& mesh, const ExitBins& exits,
                                   std::span<const Rgb> means);
 
-/// Draws (ξ, η) in [−1, 1]² with density ∝ 1 + a·ξ + b·η from uniform `u`, where |a| + |b| ≤ 1.
-glm::vec2 sample_plane(float a, float b, const glm::vec2& u);
+/// Draws ξ and η (two lanes), from 0 to 1 across a bin, with density 1 + Σ slope·(2·place − 1),
+/// Σ |slope| ≤ 1, from uniform `u` and `turn`. The mean density of a place and of its opposite is
+/// 1: `u` stays where it is, or is turned about the middle.
+inline Float4 sample_plane(Float4 slope, Float4 u, Float4 turn) {
+    const Float4 rises = slope * (2 * u - 1);
+    const Float4 density = 1 + four(rises[0] + rises[1]);
+    return 2 * turn < density ? u : 1 - u;
+}
 
 } // namespace rapport

@@ -22,10 +22,6 @@ DirectionMesh::Axis::Axis(int count, double finest)
         const double t = static_cast<double>(2 * i - count) / count, size = std::abs(t);
         edges.push_back(std::copysign(finest * size + (1 - finest) * square(size), t));
     }
-    for (int i = 0; i < count; ++i)
-        cells.push_back({static_cast<float>(edges[i]),
-                         static_cast<float>(0.5 * (edges[i + 1] - edges[i])),
-                         static_cast<float>(2 / (edges[i + 1] - edges[i]))});
 }
 
 DirectionMesh::DirectionMesh(int columns, int rows)
@@ -37,18 +33,17 @@ DirectionMesh::Bounds DirectionMesh::bounds(size_t bin) const {
 }
 
 size_t ExitBins::quarter(const glm::dvec3& w) const {
-    const DirectionMesh::Place<double> place = mesh_.place(chart_.point(w));
+    const DirectionMesh::Place place = mesh_.place(chart_.point(w));
     return 4 * place.bin + 2 * (place.xi >= 0) + (place.eta >= 0);
 }
 
 double ExitBins::solid_angle(size_t bin) const {
     const DirectionMesh::Bounds b = mesh_.bounds(bin);
-    return (b.u_high - b.u_low) * (b.v_high - b.v_low) /
-           chart_.density(mesh_.point<double>({bin, 0, 0}));
+    return (b.u_high - b.u_low) * (b.v_high - b.v_low) / chart_.density(mesh_.point({bin, 0, 0}));
 }
 
 glm::dvec3 ExitBins::direction(size_t bin, double xi, double eta) const {
-    return chart_.direction(mesh_.point<double>({bin, xi, eta}));
+    return chart_.direction(mesh_.point({bin, xi, eta}));
 }
 
 } // namespace rapport

@@ -28,12 +28,17 @@ class DirectionMesh {
     };
     Bounds bounds(size_t bin) const;
     /// A place in a bin: ξ across u and η across v, from −1 to 1.
-    template <class T> struct Place {
+    struct Place {
         size_t bin;
-        T xi, eta;
+        double xi, eta;
     };
-    template <class T> Place<T> place(const ChartPoint<T>& point) const;
-    template <class T> ChartPoint<T> point(const Place<T>& place) const;
+    Place place(const ChartPoint& point) const {
+        const size_t column = u_.cell(point.u), row = v_.cell(point.v);
+        return {column * rows() + row, u_.across(column, point.u), v_.across(row, point.v)};
+    }
+    ChartPoint point(const Place& place) const {
+        return {u_.at(place.bin / rows(), place.xi), v_.at(place.bin % rows(), place.eta)};
+    }
 
     bool operator==(const DirectionMesh&) const = default;
 
@@ -43,30 +48,26 @@ class DirectionMesh {
         float half_finest, growth; ///< k/2, k the finest width over that of equal cells; 1 − k
         float steps;               ///< middle over 1 − k
         std::vector<double> edges;
-        struct Cell {
-            float low, half_width, per_half_width;
-            bool operator==(const Cell&) const = default;
-        };
-        std::vector<Cell> cells; ///< the same for looking up
 
         Axis(int count, double finest);
         bool operator==(const Axis&) const = default;
-        template <class T> size_t cell(T x) const;
+        size_t cell(double x) const {
+            const double half = half_finest;
+            const double step = (std::sqrt(half * half + growth * std::abs(x)) - half) * steps;
+            const int out = std::min(static_cast<int>(step), middle - 1);
+            return static_cast<size_t>(middle + (x < 0 ? -1 - out : out));
+        }
         /// From −1 to 1 across a cell, and back.
         double across(size_t cell, double x) const {
             const double low = edges[cell], high = edges[cell + 1];
             return std::clamp((2 * x - low - high) / (high - low), -1.0, 1.0);
         }
-        float across(size_t cell, float x) const {
-            return std::clamp((x - cells[cell].low) * cells[cell].per_half_width - 1, -1.0f, 1.0f);
-        }
         double at(size_t cell, double across) const {
             return std::lerp(edges[cell], edges[cell + 1], 0.5 * (across + 1));
         }
-        float at(size_t cell, float across) const {
-            return cells[cell].low + (across + 1) * cells[cell].half_width;
-        }
     };
+    const Axis& u_axis() const { return u_; }
+    const Axis& v_axis() const { return v_; }
 
   private:
     Axis u_, v_;
@@ -90,25 +91,7 @@ class ExitBins {
 
   private:
     const DirectionMesh& mesh_;
-    ExitChart<double> chart_;
+    ExitChart chart_;
 };
-
-template <class T> inline size_t DirectionMesh::Axis::cell(T x) const {
-    const T half = half_finest;
-    const T step = (std::sqrt(half * half + growth * std::abs(x)) - half) * steps;
-    const int out = std::min(static_cast<int>(step), middle - 1);
-    const int below = x < 0 ? -1 : 0; // all bits: ~out is −1 − out
-    return static_cast<size_t>(middle + (out ^ below));
-}
-
-template <class T>
-inline DirectionMesh::Place<T> DirectionMesh::place(const ChartPoint<T>& point) const {
-    const size_t column = u_.cell(point.u), row = v_.cell(point.v);
-    return {column * rows() + row, u_.across(column, point.u), v_.across(row, point.v)};
-}
-
-template <class T> inline ChartPoint<T> DirectionMesh::point(const Place<T>& place) const {
-    return {u_.at(place.bin / rows(), place.xi), v_.at(place.bin % rows(), place.eta)};
-}
 
 } // namespace rapport

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include "materials/table/float4.h"
+
+#include <glm/glm.hpp>
 
 namespace rapport {
 
@@ -9,50 +10,66 @@ namespace rapport {
 // look-up, so these are polynomials: of least largest error (Remez), the sine Taylor's. Whoever
 // evaluates and whoever samples call the same ones, and so see the same edges of a bin.
 
-/// acos of `x` in [0, 1], within 1e-6 rad. √(1 − x) carries the infinite slope at 1 (Abramowitz &
-/// Stegun 4.4.45).
-inline float fast_acos(float x) {
-    const float p =
-        1.57079566f +
-        x * (-0.21454282f +
-             x * (0.08817105f + x * (-0.04592723f + x * (0.02062006f + x * -0.00491117f))));
-    return std::sqrt(1.0f - x) * p;
+namespace fast_angles {
+
+constexpr float kQuarter = 1.57079633f, kHalf = 3.14159265f, kWhole = 6.28318531f; // of a turn
+/// Of atan t/t in t², t in [0, 1], and of acos x/√(1 − x) in x, x in [0, 1]: √(1 − x) carries the
+/// infinite slope at 1 (Abramowitz & Stegun 4.4.45).
+constexpr float kAtan[] = {0.99997723f,  -0.33262283f, 0.19354038f,
+                           -0.11642648f, 0.05264734f,  -0.01171913f};
+constexpr float kAcos[] = {1.57079566f,  -0.21454282f, 0.08817105f,
+                           -0.04592723f, 0.02062006f,  -0.00491117f};
+/// Of sin(t·π/2)/t in t².
+constexpr float kSine[] = {1.57079633f,     -0.645964098f,   0.0796926262f,
+                           -0.00468175414f, 0.000160441185f, -3.59884324e-6f};
+
+/// By Estrin's scheme: half as long a wait as Horner's.
+template <class C> Float4 polynomial(const C (&c)[6], Float4 x) {
+    const Float4 square = x * x;
+    return (c[0] + c[1] * x) + square * ((c[2] + c[3] * x) + square * (c[4] + c[5] * x));
 }
 
-/// atan of `t` in [0, 1], within 2e-6 rad.
-inline float fast_atan(float t) {
-    const float q = t * t;
-    return t *
-           (0.99997723f +
-            q * (-0.33262283f +
-                 q * (0.19354038f + q * (-0.11642648f + q * (0.05264734f + q * -0.01171913f)))));
+/// atan2(over, under) of numbers ≥ 0, with the polynomials `c` of the lanes. Where `cosine` is not
+/// 0 both must be, and it is acos of that.
+template <class C>
+Float4 first_quadrant(Float4 over, Float4 under, const C (&c)[6], Float4 cosine, Float4 sine) {
+    const Float4 t = min4(over, under) / max4(max4(over, under), four(1e-30f));
+    const Float4 angle = (t + sine) * polynomial(c, t * t + cosine);
+    return over > under ? kQuarter - angle : angle;
 }
 
-/// atan of ay/ax for ax, ay ≥ 0, in [0, π/2]; 0 at the origin.
-inline float fast_first_quadrant(float ax, float ay) {
-    const float angle = fast_atan(std::min(ax, ay) / std::max(std::max(ax, ay), 1e-30f));
-    return ay > ax ? 1.57079633f - angle : angle;
-}
+} // namespace fast_angles
 
-/// Azimuth of (x, y) from +x towards +y in [0, 2π], within 2e-6 rad; 0 at the origin.
-inline float fast_azimuth(float x, float y) {
-    const float angle = fast_first_quadrant(std::abs(x), std::abs(y));
-    const float half = x < 0 ? 3.14159265f - angle : angle;
-    return y < 0 ? 6.28318531f - half : half;
-}
-
-/// atan2(x, z) over π/2, for z ≥ 0: in [−1, 1], within 2e-6.
+/// atan2(x, z) over π/2, for z ≥ 0: in [−1, 1], within 2e-6; 0 at the origin.
 inline float fast_quarter_turns(float x, float z) {
-    return std::copysign(fast_first_quadrant(z, std::abs(x)) * 0.636619772f, x);
+    using namespace fast_angles;
+    const Float4 turn =
+        first_quadrant(four(std::abs(x)), four(z), kAtan, Float4{}, Float4{}) * (1 / kQuarter);
+    return negate_where(four(x) < 0, turn)[0];
 }
 
-/// sin(t·π/2) for `t` in [−1, 1], within 2e-7.
-inline float fast_sine(float t) {
-    const float q = t * t;
-    return t * (1.57079633f +
-                q * (-0.645964098f +
-                     q * (0.0796926262f +
-                          q * (-0.00468175414f + q * (0.000160441185f + q * -3.59884324e-6f)))));
+/// sin(t·π/2) of each `t` in [−1, 1], within 2e-7.
+inline Float4 fast_sine(Float4 t) { return t * fast_angles::polynomial(fast_angles::kSine, t * t); }
+
+/// The angles of an eye (x, y, z, 0) and a light, z ≥ 0, in one: the eye's θ from the normal,
+/// [0, π/2], within 1e-6; its φ from +x towards +y, [0, 2π], within 2e-6 and 0 at the pole; quarter
+/// turns of the eye and of the light, the same as above to the last bit.
+inline Float4 fast_angles_of(Float4 eye, Float4 light) {
+    using namespace fast_angles;
+    const auto c = [](int i) { return Float4{kAcos[i], kAtan[i], kAtan[i], kAtan[i]}; };
+    const Float4 polynomials[] = {c(0), c(1), c(2), c(3), c(4), c(5)};
+    const Float4 cosine = min4(__builtin_shufflevector(eye, eye, 2, 3, 3, 3), Float4{1, 0, 0, 0});
+    const Float4 e = abs4(eye), l = abs4(light);
+    const Float4 xx = __builtin_shufflevector(eye, light, 3, 0, 0, 4);
+    const Float4 over = __builtin_shufflevector(e, l, 3, 1, 0, 4);
+    const Float4 under = __builtin_shufflevector(e, l, 3, 0, 2, 6);
+    const Float4 quadrant =
+        first_quadrant(over, under, polynomials, cosine, sqrt4(Float4{1, 0, 0, 0} - cosine)) *
+        Float4{1, 1, 1 / kQuarter, 1 / kQuarter};
+    const Int4 left = xx < 0;
+    const Int4 back = __builtin_shufflevector(eye, eye, 3, 1, 3, 3) < 0;
+    const Float4 half = negate_where(left, quadrant) + keep_where(left, Float4{0, kHalf, 0, 0});
+    return negate_where(back, half) + keep_where(back, Float4{0, kWhole, 0, 0});
 }
 
 } // namespace rapport

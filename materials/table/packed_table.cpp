@@ -9,8 +9,9 @@
 namespace rapport {
 namespace {
 
-constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;
 constexpr float kLargestRoot = 65535, kSteepest = 127;
+/// Of an axis of incidence, to an interval.
+constexpr size_t kGuideSteps = 16;
 
 /// Saturated bands lie outside sRGB and have a negative channel: mixed with the grey of the same
 /// luminance until there is none. Keeps the luminance, and densities positive.
@@ -29,28 +30,16 @@ Rgb to_rgb(const float* values, const std::vector<Rgb>& band_rgb) {
     return into_gamut(sum);
 }
 
-/// Where `u` in [0, 1) falls in a distribution cumulated to 1, and what is left of it, uniform
-/// again. Parts without a share are never found.
-struct Part {
-    size_t index;
-    float left;
-};
-Part find_part(std::span<const Float4> cumulative, float u) {
-    const size_t i = count_up_to(cumulative, u);
-    const float above = cumulative[i / 4][i % 4];
-    const float below = i > 0 ? cumulative[(i - 1) / 4][(i - 1) % 4] : 0;
-    return {i, std::clamp((u - below) / (above - below), 0.0f, kOneMinusEpsilon)};
-}
-
-/// Partial sums of `shares` over their sum, in fours; the sum.
-double accumulate_shares(std::span<const double> shares, Float4* cumulative) {
+/// Partial sums of `shares` over their sum, filled up with infinity to whole lines; the sum.
+double accumulate_shares(std::span<const double> shares, Line* cumulative) {
     double total = 0, sum = 0;
     for (const double share : shares)
         total += share;
-    std::vector<float> partial;
-    for (const double share : shares)
-        partial.push_back(total > 0 ? static_cast<float>((sum += share) / total) : 0);
-    std::ranges::copy(in_fours(partial), cumulative);
+    for (size_t i = 0; i < 16 * Line::lines(shares.size()); ++i)
+        cumulative[i / 16].numbers[i % 16] = i >= shares.size() ? HUGE_VALF
+                                             : total > 0
+                                                 ? static_cast<float>((sum += shares[i]) / total)
+                                                 : 0;
     return total;
 }
 
@@ -59,57 +48,66 @@ std::vector<double> closed_circle(std::vector<double> phi) {
     return phi;
 }
 
-Float4 four(const Rgb& c) { return Float4{c.r, c.g, c.b, 0}; }
+Float4 rgb0(const Rgb& c) { return Float4{c.r, c.g, c.b, 0}; }
 
 } // namespace
 
-PackedTable::Axis::Axis(const std::vector<double>& axis) : values(axis.begin(), axis.end()) {
-    const size_t intervals = axis.size() - 1;
+PackedTable::Axis::Axis(const std::vector<double>& axis) {
+    if (axis.size() == 1)
+        intervals.push_back({static_cast<float>(axis.front()), 0, HUGE_VALF});
+    for (size_t i = 0; i + 1 < axis.size(); ++i)
+        intervals.push_back({static_cast<float>(axis[i]),
+                             static_cast<float>(1 / (axis[i + 1] - axis[i])),
+                             i + 2 < axis.size() ? static_cast<float>(axis[i + 1]) : HUGE_VALF});
+    const size_t count = kGuideSteps * intervals.size();
     const double range = axis.back() - axis.front();
-    steps = intervals > 0 ? static_cast<float>(intervals / range) : 0;
-    for (size_t i = 0; i < intervals; ++i) {
-        per_step.push_back(static_cast<float>(1 / (axis[i + 1] - axis[i])));
-        const double start = axis.front() + range * i / intervals;
-        const auto after = std::upper_bound(axis.begin(), axis.end(), start) - axis.begin();
-        guide.push_back(static_cast<uint32_t>(std::max<std::ptrdiff_t>(after, 1) - 1));
+    steps = range > 0 ? static_cast<float>(count / range) : 0;
+    for (size_t i = 0, interval = 0; i < count; ++i) {
+        while (intervals[interval].end <= axis.front() + range * i / count)
+            ++interval;
+        guide.push_back(static_cast<uint32_t>(interval));
     }
 }
 
-PackedTable::Axis::Place PackedTable::Axis::place(float x) const {
-    if (guide.empty())
-        return {0, 0};
-    const float step = std::clamp((x - values[0]) * steps, 0.0f, guide.size() - 0.5f);
-    size_t i = guide[static_cast<size_t>(step)];
-    while (i + 1 < guide.size() && values[i + 1] <= x)
+inline size_t PackedTable::Axis::interval(uint32_t step, float x) const {
+    size_t i = guide[step];
+    while (intervals[i].end <= x)
         ++i;
-    return {i, std::clamp((x - values[i]) * per_step[i], 0.0f, 1.0f)};
+    return i;
 }
 
 PackedTable::PackedTable(const BsdfTable& table)
-    : mesh_(table.exits), theta_(table.grid_theta), phi_(closed_circle(table.grid_phi)),
+    : exits_(table.exits), mesh_(table.exits), theta_(table.grid_theta),
+      phi_(closed_circle(table.grid_phi)), starts_{theta_.intervals[0].start,
+                                                   phi_.intervals[0].start, 0, 0},
+      steps_{theta_.steps, phi_.steps, 0, 0}, last_{theta_.guide.size() - 0.5f,
+                                                    phi_.guide.size() - 0.5f, 0, 0},
       least_cosine_(static_cast<float>(std::cos(table.grid_theta.back()))),
-      phis_(table.grid_phi.size()), nodes_(table.grid_theta.size() * phis_),
-      bins_(4 * mesh_.bins() * nodes_), scale_(2 * nodes_), albedo_(2 * nodes_),
-      unscattered_(2 * nodes_), share_(4 * nodes_), column_fours_((mesh_.columns() + 3) / 4),
-      row_fours_((mesh_.rows() + 3) / 4),
-      cumulative_size_(column_fours_ + mesh_.columns() * row_fours_),
-      cumulative_(4 * nodes_ * cumulative_size_) {
+      thetas_(table.grid_theta.size()), phis_(table.grid_phi.size()), side_nodes_(thetas_ * phis_),
+      nodes_(2 * side_nodes_), rows_(exits_.rows()), block_bins_(exits_.bins()),
+      bins_(2 * exits_.bins() * nodes_ + 1), scale_(nodes_ + 1), reflected_(nodes_ + 1),
+      transmitted_(nodes_ + 1), albedo_(nodes_ + 1), unscattered_(nodes_ + 1),
+      column_lines_(Line::lines(exits_.columns())), row_lines_(Line::lines(exits_.rows())),
+      cumulative_lines_(column_lines_ + exits_.columns() * row_lines_),
+      cumulative_(2 * nodes_ * cumulative_lines_) {
     const std::vector<Rgb> band_rgb = table.bands.to_rgb();
     for (const size_t side : {0, 1})
-        for (size_t node = 0; node < nodes_; ++node)
-            add_node(table, side, node, band_rgb);
+        for (size_t theta = 0; theta < thetas_; ++theta)
+            for (size_t phi = 0; phi < phis_; ++phi)
+                add_node(table, side, theta, phi, band_rgb);
 }
 
-void PackedTable::add_node(const BsdfTable& table, size_t side, size_t node,
+void PackedTable::add_node(const BsdfTable& table, size_t side, size_t theta, size_t phi,
                            const std::vector<Rgb>& band_rgb) {
-    const size_t direction = table.grid_index[side * nodes_ + node], at = side * nodes_ + node;
-    const size_t bins = mesh_.bins(), rows = mesh_.rows();
+    const size_t direction = table.grid_index[side * side_nodes_ + theta * phis_ + phi];
+    const size_t at = side * side_nodes_ + phi * thetas_ + theta;
+    const size_t bins = exits_.bins(), rows = exits_.rows();
     const ExitBins exits = table.exits_of(direction);
 
     std::vector<Rgb> means(2 * bins);
     std::vector<double> area(bins), jacobian(bins); // of the chart; solid angle over it
     for (size_t i = 0; i < bins; ++i) {
-        const DirectionMesh::Bounds b = mesh_.bounds(i);
+        const DirectionMesh::Bounds b = exits_.bounds(i);
         area[i] = (b.u_high - b.u_low) * (b.v_high - b.v_low);
         jacobian[i] = exits.solid_angle(i) / area[i];
     }
@@ -126,10 +124,10 @@ void PackedTable::add_node(const BsdfTable& table, size_t side, size_t node,
     glm::dvec3 flux(0);
     for (size_t block = 0; block < 2; ++block) {
         const std::vector<BinPlane> planes =
-            reconstruct(mesh_, exits, std::span(means).subspan(block * bins, bins));
+            reconstruct(exits_, exits, std::span(means).subspan(block * bins, bins));
         std::vector<double> shares(bins);
         for (size_t i = 0; i < bins; ++i) {
-            Bin& bin = bins_[((side * 2 + block) * bins + i) * nodes_ + node];
+            Bin& bin = bins_[(block * bins + i) * nodes_ + at];
             for (int c = 0; c < 3; ++c) {
                 const float density = planes[i].mean[c] * static_cast<float>(jacobian[i]);
                 bin.root[c] = static_cast<uint16_t>(
@@ -141,89 +139,163 @@ void PackedTable::add_node(const BsdfTable& table, size_t side, size_t node,
             bin.slope_xi = static_cast<int8_t>(planes[i].slope_xi * kSteepest);
             bin.slope_eta = static_cast<int8_t>(planes[i].slope_eta * kSteepest);
         }
-        Float4* const of_columns = &cumulative_[(at * 2 + block) * cumulative_size_];
-        Float4* const of_rows = of_columns + column_fours_;
-        std::vector<double> columns(mesh_.columns());
+        Line* const of_columns = &cumulative_[(at * 2 + block) * cumulative_lines_];
+        Line* const of_rows = of_columns + column_lines_;
+        std::vector<double> columns(exits_.columns());
         for (size_t column = 0; column < columns.size(); ++column)
             columns[column] = accumulate_shares(std::span(shares).subspan(column * rows, rows),
-                                                of_rows + column * row_fours_);
-        share_[at * 2 + block] = static_cast<float>(accumulate_shares(columns, of_columns));
+                                                of_rows + column * row_lines_);
+        const auto share = static_cast<float>(accumulate_shares(columns, of_columns));
+        (block == 0 ? reflected_ : transmitted_)[at] = share;
     }
-    albedo_[at] = four(Rgb(flux));
-    unscattered_[at] = four(to_rgb(&table.unscattered[direction * band_rgb.size()], band_rgb));
+    albedo_[at] = rgb0(Rgb(flux));
+    unscattered_[at] = rgb0(to_rgb(&table.unscattered[direction * band_rgb.size()], band_rgb));
 }
 
-PackedTable::Blend PackedTable::blend(const glm::vec3& eye) const {
-    const Axis::Place t = theta_.place(fast_acos(std::min(std::abs(eye.z), 1.0f)));
-    const Axis::Place p = phi_.place(fast_azimuth(eye.x, eye.y));
-    const size_t next = p.interval + 1 == phis_ ? 0 : p.interval + 1;
-    const size_t inner = t.interval * phis_, outer = theta_.guide.empty() ? inner : inner + phis_;
-    const auto node = [](size_t n) { return static_cast<uint32_t>(n); };
-    return {eye.z > 0 ? 0u : 1u,
-            {node(inner + p.interval), node(inner + next), node(outer + p.interval),
-             node(outer + next)},
-            {(1 - t.share) * (1 - p.share), (1 - t.share) * p.share, t.share * (1 - p.share),
-             t.share * p.share}};
-}
+// Looking up: hardly a branch, four numbers at a time.
 
-ExitChart<float> PackedTable::chart(const glm::vec3& eye) const {
-    const float cosine = std::abs(eye.z);
-    if (cosine >= least_cosine_)
-        return ExitChart<float>(eye);
-    const float scale = std::sqrt((1 - square(least_cosine_)) / ((1 - cosine) * (1 + cosine)));
-    return ExitChart<float>({eye.x * scale, eye.y * scale, least_cosine_});
-}
-
-Rgb PackedTable::blended(const Blend& blend, const std::vector<Float4>& values) const {
-    const Float4* const side = &values[blend.side * nodes_];
-    Float4 sum{};
-    for (int k = 0; k < 4; ++k)
-        sum += blend.weight[k] * side[blend.node[k]];
-    return {sum[0], sum[1], sum[2]};
-}
-
-Rgb PackedTable::intensity(const Blend& blend, const ExitChart<float>& chart,
-                           const glm::vec3& light) const {
-    const ChartPoint<float> point = chart.point(light);
-    const auto place = mesh_.place(point);
-    const size_t block = (light.z > 0) == (blend.side == 0) ? 0 : 1;
-    const Bin* const nodes = &bins_[((blend.side * 2 + block) * mesh_.bins() + place.bin) * nodes_];
-    const float* const scale = &scale_[blend.side * nodes_];
-    const float xi = place.xi * (1 / kSteepest), eta = place.eta * (1 / kSteepest);
-    Float4 sum{};
-    for (int k = 0; k < 4; ++k) {
-        const Bin& bin = nodes[blend.node[k]];
-        const Float4 root = load_uint16(&bin);
-        sum += (blend.weight[k] * scale[blend.node[k]] *
-                (1 + bin.slope_xi * xi + bin.slope_eta * eta)) *
-               (root * root);
+inline PackedTable::EyeAndLight PackedTable::prepare(const glm::vec3& eye,
+                                                     const glm::vec3& light) const {
+    Float4 e = load_xyz(&eye.x);
+    e = max4(e, e * Float4{1, 1, -1, 1});
+    if (e[2] < least_cosine_) {
+        // Beyond the last θ the chart stays where it is: to follow the mirror direction down to the
+        // horizon would heap up the light before it.
+        e *= sqrt4(four((1 - square(least_cosine_)) / ((1 - e[2]) * (1 + e[2]))));
+        e[2] = least_cosine_;
     }
-    sum *= chart.density(point);
-    return {sum[0], sum[1], sum[2]};
+    const Float4 angles = fast_angles_of(e, load_xyz(&light.x));
+    const Float4 steps = max4(min4((angles - starts_) * steps_, last_), Float4{});
+    const Int4 step = __builtin_convertvector(steps, Int4);
+    const size_t t = theta_.interval(step[0], angles[0]), p = phi_.interval(step[1], angles[1]);
+    const Float4 intervals = load_pairs(&theta_.intervals[t].start, &phi_.intervals[p].start);
+    const Float4 starts = __builtin_shufflevector(intervals, intervals, 0, 2, 0, 2);
+    const Float4 per_length = __builtin_shufflevector(intervals, intervals, 1, 3, 1, 3);
+    const Float4 after = clamp4((angles - starts) * per_length, 0, 1), before = 1 - after;
+    const size_t side = eye.z > 0 ? 0 : 1, next = p + 1 == phis_ ? 0 : p + 1;
+    const size_t at = side * side_nodes_ + t;
+    const FastChart chart(e[1], angles[2]);
+    return {{at + p * thetas_, at + next * thetas_,
+             __builtin_shufflevector(before, after, 0, 4, 0, 4) *
+                 __builtin_shufflevector(before, after, 1, 1, 5, 5),
+             chart},
+            chart.point(light.y, angles[3])};
 }
 
-PackedTable::Exit PackedTable::sample(const Blend& blend, float choice, const glm::vec2& u) const {
-    const float* const share = &share_[blend.side * nodes_ * 2];
-    Float4 cumulative[2];
-    float sum = 0;
-    for (int k = 0; k < 4; ++k)
-        for (int block = 0; block < 2; ++block)
-            cumulative[k / 2][2 * (k % 2) + block] = sum +=
-                blend.weight[k] * share[2 * blend.node[k] + block];
-    const size_t picked = count_up_to(cumulative, choice * sum);
-    const uint32_t node = blend.node[picked / 2];
-    const size_t block = picked % 2;
+/// Of the mean albedo, that of each node.
+inline Float4 PackedTable::albedo_parts(const Eye& eye) const {
+    return eye.weight * (load_pairs(&reflected_[eye.first], &reflected_[eye.second]) +
+                         load_pairs(&transmitted_[eye.first], &transmitted_[eye.second]));
+}
 
-    const Float4* const columns =
-        &cumulative_[((blend.side * nodes_ + node) * 2 + block) * cumulative_size_];
-    const Part column = find_part({columns, column_fours_}, u.x);
+inline float PackedTable::mean_albedo(const Eye& eye) const {
+    const Float4 parts = albedo_parts(eye);
+    return ((parts[0] + parts[1]) + parts[2]) + parts[3];
+}
+
+inline Float4 PackedTable::blended(const Eye& eye, const std::vector<Float4>& values) const {
+    Float4 sum{};
+    for (size_t k = 0; k < 4; ++k)
+        sum += eye.weight[k] * values[eye.node(k)];
+    return sum;
+}
+
+inline Float4 PackedTable::intensity(const Eye& eye, size_t block, const FastMesh::Place& place,
+                                     float density) const {
+    const Bin* const bin = nodes_of_bin(block, place.bin);
+    Word8 first, second;
+    std::memcpy(&first, bin + eye.first, sizeof first);
+    std::memcpy(&second, bin + eye.second, sizeof second);
+    const Int4 slopes = std::bit_cast<Int4>(__builtin_shufflevector(
+        std::bit_cast<Float4>(first), std::bit_cast<Float4>(second), 1, 3, 5, 7));
+    const Float4 xi = __builtin_convertvector((slopes << 8) >> 24, Float4);
+    const Float4 eta = __builtin_convertvector(slopes >> 24, Float4);
+    const Float4 across = place.across * (1 / kSteepest);
+    const Float4 factor = eye.weight * load_pairs(&scale_[eye.first], &scale_[eye.second]) *
+                          density * (1 + xi * across[0] + eta * across[1]);
+    const Float4 roots[] = {low_words(first), high_words(first), low_words(second),
+                            high_words(second)};
+    return (factor[0] * (roots[0] * roots[0]) + factor[1] * (roots[1] * roots[1])) +
+           (factor[2] * (roots[2] * roots[2]) + factor[3] * (roots[3] * roots[3]));
+}
+
+namespace {
+
+float sum3(Float4 c) { return (c[0] + c[1]) + c[2]; }
+
+/// Where `u` in [0, 1) falls in a distribution cumulated to 1, and what is left of it, uniform
+/// again. Parts without a share are never found.
+struct Part {
+    size_t index;
+    float left; ///< [0, 1]
+};
+Part find_part(const Line* cumulative, size_t lines, float u) {
+    const size_t i = count_up_to(cumulative, lines, u);
+    const float* const up_to = cumulative->numbers + i;
+    const float below = i > 0 ? up_to[-1] : 0;
+    return {i, (u - below) / (*up_to - below)};
+}
+
+} // namespace
+
+PackedTable::Value PackedTable::eval_and_pdf(const glm::vec3& eye, const glm::vec3& light) const {
+    const EyeAndLight prepared = prepare(eye, light);
+    const float albedo = mean_albedo(prepared.eye);
+    const size_t block = (light.z > 0) == (eye.z > 0) ? 0 : 1;
+    const Float4 c =
+        intensity(prepared.eye, block, mesh_.place(prepared.light.uv), prepared.light.density);
+    return {{c[0], c[1], c[2]}, albedo > 0 ? sum3(c) / (3 * albedo) : 0};
+}
+
+std::optional<PackedTable::Sample> PackedTable::sample(const glm::vec3& eye, float choice,
+                                                       const glm::vec2& u) const {
+    const Eye prepared = prepare(eye, eye).eye;
+    // The four nodes' parts of the albedo one after the other, in each what is reflected first.
+    const Float4 whole = albedo_parts(prepared);
+    const float up_to[] = {0, whole[0], whole[0] + whole[1], (whole[0] + whole[1]) + whole[2]};
+    const float albedo = up_to[3] + whole[3];
+    if (!(albedo > 0))
+        return std::nullopt;
+    const float chosen = choice * albedo;
+    const size_t k = size_t{chosen >= up_to[1]} + (chosen >= up_to[2]) + (chosen >= up_to[3]);
+    const size_t node = prepared.node(k);
+    const Float4 past = four(chosen - up_to[k]);
+    const Float4 reflected = four(prepared.weight[k] * reflected_[node]);
+    const Float4 transmitted = four(prepared.weight[k] * transmitted_[node]);
+    const Int4 through = (past >= reflected) & (transmitted > 0);
+    const size_t block = through[0] & 1;
+    const Float4 turn =
+        (past - keep_where(through, reflected)) / (through ? transmitted : reflected);
+
+    const Line* const columns = &cumulative_[(node * 2 + block) * cumulative_lines_];
+    const Part column = find_part(columns, column_lines_, u.x);
     const Part row =
-        find_part({columns + column_fours_ + column.index * row_fours_, row_fours_}, u.y);
-    const size_t i = column.index * mesh_.rows() + row.index;
-    const Bin& bin = bins_[((blend.side * 2 + block) * mesh_.bins() + i) * nodes_ + node];
-    const glm::vec2 place = sample_plane(bin.slope_xi * (1 / kSteepest),
-                                         bin.slope_eta * (1 / kSteepest), {column.left, row.left});
-    return {block == 1, mesh_.point<float>({i, place.x, place.y})};
+        find_part(columns + column_lines_ + column.index * row_lines_, row_lines_, u.y);
+    const size_t index = column.index * rows_ + row.index;
+    const Bin& bin = nodes_of_bin(block, index)[node];
+    const Float4 slope = Float4{float(bin.slope_xi), float(bin.slope_eta), 0, 0} * (1 / kSteepest);
+    const Float4 share = sample_plane(slope, Float4{column.left, row.left, 0, 0}, turn);
+    const Float4 uv = mesh_.point(column.index, row.index, share);
+    const Float4 c = intensity(prepared, block, {index, 2 * share - 1}, prepared.chart.density(uv));
+    const float sum = sum3(c);
+    if (!(sum > 0))
+        return std::nullopt;
+    const Float4 w = c * (3 * albedo / sum);
+    glm::vec3 light = prepared.chart.direction(uv);
+    // On the horizon it would lose its side.
+    light.z = std::max(light.z, 1e-7f);
+    light.z = std::copysign(light.z, (block == 0) == (eye.z > 0) ? 1.0f : -1.0f);
+    return Sample{light, {w[0], w[1], w[2]}, sum / (3 * albedo)};
+}
+
+Rgb PackedTable::albedo(const glm::vec3& eye) const {
+    const Float4 c = blended(prepare(eye, eye).eye, albedo_);
+    return {c[0], c[1], c[2]};
+}
+
+Rgb PackedTable::unscattered(const glm::vec3& eye) const {
+    const Float4 c = blended(prepare(eye, eye).eye, unscattered_);
+    return {c[0], c[1], c[2]};
 }
 
 } // namespace rapport

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "materials/table/bsdf_table.h"
-#include "materials/table/float4.h"
+#include "materials/table/fast_chart.h"
 
-#include <array>
+#include <optional>
 
 namespace rapport {
 
@@ -20,68 +20,88 @@ class PackedTable {
     /// Of a table whose grid is whole on both sides. Bands become linear RGB.
     explicit PackedTable(const BsdfTable& table);
 
-    /// The nodes about a direction of incidence and their bilinear weights in (θ, φ), which sum to
-    /// 1; φ goes round the circle, and beyond the first and last θ all stays constant.
-    struct Blend {
-        uint32_t side;
-        std::array<uint32_t, 4> node; ///< of that side
-        std::array<float, 4> weight;
-    };
-    Blend blend(const glm::vec3& eye) const;
+    // The members of TableBsdf, of directions off the horizon.
 
-    Rgb albedo(const Blend& blend) const { return blended(blend, albedo_); }
-    Rgb unscattered(const Blend& blend) const { return blended(blend, unscattered_); }
-    /// The chart of the exits. Beyond the last θ it stays where it is: to follow the mirror
-    /// direction down to the horizon would heap up the light before it.
-    ExitChart<float> chart(const glm::vec3& eye) const;
-    /// The interpolant [1/sr]; `chart` is the eye's.
-    Rgb intensity(const Blend& blend, const ExitChart<float>& chart, const glm::vec3& light) const;
-
-    struct Exit {
-        bool transmitted;
-        ChartPoint<float> point;
+    struct Value {
+        Rgb intensity; ///< [1/sr]
+        float pdf;
     };
-    /// Draws an exit in proportion to the mean of the channels. `choice` picks node and side, `u`
-    /// the place: neighbours stay neighbours, for samples that are spread evenly. The albedo must
-    /// not be 0.
-    Exit sample(const Blend& blend, float choice, const glm::vec2& u) const;
+    Value eval_and_pdf(const glm::vec3& eye, const glm::vec3& light) const;
+    struct Sample {
+        glm::vec3 light;
+        Rgb weight;
+        float pdf;
+    };
+    /// `choice` picks node and side, `u` the place: neighbours stay neighbours but for a half-turn
+    /// within their bin, for samples that are spread evenly.
+    std::optional<Sample> sample(const glm::vec3& eye, float choice, const glm::vec2& u) const;
+    Rgb albedo(const glm::vec3& eye) const;
+    Rgb unscattered(const glm::vec3& eye) const;
 
   private:
     /// The grid along one angle of incidence.
     struct Axis {
-        std::vector<float> values, per_step; ///< per_step: 1 over the lengths of the intervals
-        /// The interval that each of as many equal steps as there are intervals begins in: on an
-        /// even axis the one that is looked for, else near it.
+        struct Interval {
+            float start, per_length; ///< 1 over the length, or 0 of an axis of one value
+            float end;               ///< infinite at the end of the axis
+        };
+        std::vector<Interval> intervals;
+        /// The interval that each of many equal steps begins in, or one that is not far before.
         std::vector<uint32_t> guide;
-        float steps; ///< per unit
+        float steps; ///< of the guide, per unit
 
         explicit Axis(const std::vector<double>& axis);
-        struct Place {
-            size_t interval;
-            float share; ///< of the way along it, [0, 1]
-        };
-        Place place(float x) const;
+        size_t interval(uint32_t step, float x) const;
     };
+
+    /// What is known of an eye before the light is: the four nodes about it with their bilinear
+    /// weights in (θ, φ), and the chart of the exits. φ goes round the circle, and beyond the first
+    /// and last θ all stays constant.
+    struct Eye {
+        size_t first, second; ///< nodes at φ before and after, at θ before; θ after follows each
+        Float4 weight;        ///< of first, first + 1, second, second + 1; their sum is 1
+        FastChart chart;
+
+        size_t node(size_t k) const { return (k < 2 ? first : second) + k % 2; }
+    };
+    struct EyeAndLight {
+        Eye eye;
+        FastChart::Point light;
+    };
+    EyeAndLight prepare(const glm::vec3& eye, const glm::vec3& light) const;
+    Float4 albedo_parts(const Eye& eye) const;
+    float mean_albedo(const Eye& eye) const;
+    Float4 blended(const Eye& eye, const std::vector<Float4>& values) const;
+    /// The interpolant [1/sr]; the fourth lane is not used.
+    Float4 intensity(const Eye& eye, size_t block, const FastMesh::Place& place,
+                     float density) const;
+
     struct Bin {
         uint16_t root[3];
         int8_t slope_xi, slope_eta;
     };
-    void add_node(const BsdfTable& table, size_t side, size_t node,
+    void add_node(const BsdfTable& table, size_t side, size_t theta, size_t phi,
                   const std::vector<Rgb>& band_rgb);
-    Rgb blended(const Blend& blend, const std::vector<Float4>& values) const;
+    const Bin* nodes_of_bin(size_t block, size_t bin) const {
+        return &bins_[(block * block_bins_ + bin) * nodes_];
+    }
 
-    DirectionMesh mesh_;
+    DirectionMesh exits_;
+    FastMesh mesh_;
     Axis theta_, phi_;
-    float least_cosine_; ///< of the last θ
-    size_t phis_, nodes_; ///< nodes of the whole grid of a side, those at θ = 0 repeated for each φ
-    std::vector<Bin> bins_;                    ///< [side][block][bin][node]
-    std::vector<float> scale_;                 ///< [side][node]: of the squares of the roots
-    std::vector<Float4> albedo_, unscattered_; ///< [side][node]; the fourth is not used
-    std::vector<float> share_;                 ///< [side][node][block]: mean albedo of a block
-    /// [side][node][block]: the share of each column in its block, then of each row in its column,
-    /// summed up to 1 (or 0 throughout), in fours.
-    size_t column_fours_, row_fours_, cumulative_size_;
-    std::vector<Float4> cumulative_;
+    Float4 starts_, steps_, last_; ///< of the guides of both
+    float least_cosine_;           ///< of the last θ
+    /// Nodes are those of the whole grid, [side][φ][θ], with those at θ = 0 repeated for each φ.
+    /// One more is kept at the end of all, since look-ups read two at a time.
+    size_t thetas_, phis_, side_nodes_, nodes_, rows_, block_bins_;
+    std::vector<Bin> bins_;                      ///< [block][bin][node]
+    std::vector<float> scale_;                   ///< [node]: of the squares of the roots
+    std::vector<float> reflected_, transmitted_; ///< [node]: mean albedos
+    std::vector<Float4> albedo_, unscattered_;   ///< [node]; the fourth is not used
+    /// [node][block]: the share of each column in its block, then of each row in its column,
+    /// summed up to 1 (or 0 throughout), in whole cache lines.
+    size_t column_lines_, row_lines_, cumulative_lines_;
+    std::vector<Line> cumulative_;
 };
 
 } // namespace rapport

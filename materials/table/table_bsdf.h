@@ -1,13 +1,11 @@
 #pragma once
 
-#include "materials/table/bsdf_table.h"
+#include "materials/table/packed_table.h"
 
 #include <memory>
 #include <optional>
 
 namespace rapport {
-
-class PackedTable;
 
 /// Evaluates and samples a full table by one interpolant: `eval`, `pdf` and `sample` agree with
 /// each other by construction. Between directions of incidence, the nodes around are blended in the
@@ -23,17 +21,10 @@ class TableBsdf {
 
     Rgb eval(const glm::vec3& eye, const glm::vec3& light) const;
     float pdf(const glm::vec3& eye, const glm::vec3& light) const;
-    struct Value {
-        Rgb intensity;
-        float pdf;
-    };
+    using Value = PackedTable::Value;
     /// Both at the price of one.
     Value eval_and_pdf(const glm::vec3& eye, const glm::vec3& light) const;
-    struct Sample {
-        glm::vec3 light;
-        Rgb weight; ///< intensity / pdf
-        float pdf;
-    };
+    using Sample = PackedTable::Sample;
     std::optional<Sample> sample(const glm::vec3& eye, float choice, const glm::vec2& u) const;
     Rgb unscattered(const glm::vec3& eye) const;
     Rgb albedo(const glm::vec3& eye) const;
