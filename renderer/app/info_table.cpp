@@ -82,12 +82,12 @@ nlohmann::ordered_json incident_json(const BsdfTable& table) {
     return incident;
 }
 
-/// Which of many directions a person wants to see: light along the normal, and at the middle and
+/// Which of many directions a person wants to see: light along the normal, and at about 50° and
 /// the steepest angle along weft and warp, of each side.
 bool is_telling(const nlohmann::ordered_json& from, double steepest) {
     const double theta = from["theta"], phi = from["phi"];
     const bool along = std::abs(phi) < 0.01 || std::abs(phi - 90) < 0.01;
-    return theta < 0.01 || (along && (std::abs(theta - 45) < 6 || theta > steepest - 0.01));
+    return theta < 0.01 || (along && (std::abs(theta - 50) < 5 || theta > steepest - 0.01));
 }
 
 /// A line for each direction, or of many for some.

@@ -17,8 +17,10 @@ class Letters {
         static const ImWchar ranges[] = {0x20, 0xFF, 0x370, 0x3FF, 0x2010, 0x2033, 0};
         ImFontConfig config;
         config.SizePixels = kSize;
+        config.OversampleH = 1; // a pixel of the atlas is one of the picture
+        config.PixelSnapH = true;
         font_ = std::filesystem::exists(kFont)
-                    ? atlas_.AddFontFromFileTTF(kFont, std::round(1.2f * kSize), nullptr, ranges)
+                    ? atlas_.AddFontFromFileTTF(kFont, std::round(1.2f * kSize), &config, ranges)
                     : atlas_.AddFontDefault(&config);
         int height;
         atlas_.GetTexDataAsAlpha8(&pixels_, &width_, &height);

@@ -16,6 +16,7 @@
 namespace rapport {
 namespace {
 
+using tests::next_picture;
 using tests::SquareScene;
 
 class ViewWindow : public testing::Test {

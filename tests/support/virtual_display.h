@@ -32,7 +32,7 @@ class VirtualDisplay {
         }
         close(ends[1]);
         std::string number; // which the server tells, with a line's end, once it is ready
-        for (char digit; read(ends[0], &digit, 1) == 1 && digit != '\n';)
+        for (char digit; ::read(ends[0], &digit, 1) == 1 && digit != '\n';)
             number += digit;
         close(ends[0]);
         if (number.empty()) {
