@@ -9,7 +9,7 @@
 namespace rapport {
 namespace {
 
-constexpr size_t kBatchPaths = 1024;
+constexpr size_t kBatchPaths = 256;         ///< few, for each asks whether to stop
 constexpr double kGreatestAbsorption = 1e4; ///< [1/µm]: ten thousand times what hides a fibre
 
 /// Cosine-weighted, from the face side.

@@ -12,6 +12,8 @@ namespace {
 using glm::dvec2, glm::dvec3, glm::ivec3;
 using kernel::FibreSegment;
 
+constexpr int kSamples = 20000;
+
 struct SurfacePoint {
     dvec3 position;
     uint32_t segment;
@@ -131,17 +133,21 @@ bool is_period(const dvec2& shift, const dvec3& period) {
 } // namespace
 
 double overlap_fraction(const kernel::FibreAssembly& assembly,
-                        std::span<const FibreSegment> segments, int samples) {
-    if (segments.empty() || samples <= 0)
+                        std::span<const FibreSegment> segments, const StopSignal& stopped) {
+    if (segments.empty())
         return 0;
-    const std::vector<SurfacePoint> points = spread_over(segments, samples);
+    const std::vector<SurfacePoint> points = spread_over(segments, kSamples);
     double radius = 0;
     for (const FibreSegment& s : segments)
         radius = std::max(radius, s.radius);
     const PeriodicBoxes boxes(assembly.cell, points, 4 * radius);
 
     std::vector<uint8_t> covered(points.size(), 0);
-    for (const FibreSegment& s : segments) {
+    for (size_t i = 0; i < segments.size(); ++i) {
+        constexpr size_t kAskEvery = 4096;
+        if (i % kAskEvery == 0)
+            throw_if(stopped);
+        const FibreSegment& s = segments[i];
         const dvec3 end = s.start + s.direction * s.length;
         const auto cover = [&](uint32_t k, const dvec2& cells) {
             if (covered[k])

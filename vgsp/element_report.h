@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/core/stop_signal.h"
 #include "renderer/kernel/fibres.h"
 
 #include <span>
@@ -7,10 +8,12 @@
 namespace rapport {
 
 /// The share of the fibres' surface that lies inside another fibre, [0, 1]: estimated from
-/// `samples` points spread evenly over the area of all cylinders (a low-discrepancy sequence, so
-/// the same assembly always gives the same number). Standard error at most √(result/samples).
-/// Where fibres overlap the tracer must fall back on the paper's shift rule.
+/// 20,000 points spread evenly over the area of all cylinders (a low-discrepancy sequence, so
+/// the same assembly always gives the same number). Standard error at most √(result/20,000).
+/// Throws Stopped when told to stop. Where fibres overlap the tracer must fall back on the paper's
+/// shift rule.
 double overlap_fraction(const kernel::FibreAssembly& assembly,
-                        std::span<const kernel::FibreSegment> segments, int samples = 20000);
+                        std::span<const kernel::FibreSegment> segments,
+                        const StopSignal& stopped = {});
 
 } // namespace rapport

@@ -40,16 +40,16 @@ class MigrationField {
     MigrationField(double deviation, double along, double across, double period, CounterRng& rng);
 
     glm::dvec2 at(const glm::dvec2& place, double s) const;
-    bool empty() const { return waves_.empty(); }
+    bool empty() const { return waves_.phase.empty(); }
 
   private:
-    struct Wave {
-        double along;      ///< [rad/µm]
-        glm::dvec2 across; ///< [rad/µm]
-        double phase;
-        glm::dvec2 amplitude; ///< [µm]
+    /// An entry of each to a wave: what at() does to all of them goes on in SIMD registers.
+    struct Waves {
+        std::vector<double> along, across_x, across_y; ///< [turns/µm]
+        std::vector<double> phase;                     ///< [turns]
+        std::vector<glm::dvec2> amplitude;             ///< [µm]
     };
-    std::vector<Wave> waves_;
+    Waves waves_;
 };
 
 /// The distance across a yarn over which its fibres wander together [µm]: the mean size of its

@@ -103,6 +103,7 @@ WoundYarn wind_yarn(const YarnSystem& system, const glm::dvec3& direction, size_
         2 * joints.max_turn * smallest_bend(yarn, kind.yarn->irregularity), cell_length / 8);
     WoundYarn wound;
     for (const FibreSite& site : sites) {
+        throw_if(options.stopped);
         const double cells = double(site.turns.size());
         const ClosedCurve curve{[&](double s) { return yarn.fibre_point(site, s); },
                                 cell_length * cells, sampling_step,
@@ -191,7 +192,6 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
                    "at least ", element, cloth, ends, picks);
     std::vector<WoundYarn> yarns(ends + picks);
     parallel_for(yarns.size(), [&](size_t k) {
-        throw_if(options.stopped);
         yarns[k] = k < ends ? wind_yarn(warp, {0, 1, 0}, k, k, options)
                             : wind_yarn(weft, {1, 0, 0}, k - ends, k, options);
     });
@@ -207,7 +207,7 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
         element.segments += chain.points.size();
     element.memory = checked_memory(double(element.segments), "", element, cloth, ends, picks);
     const std::vector<kernel::FibreSegment> segments = kernel::fibre_segments(element.fibres);
-    element.overlap_fraction = overlap_fraction(element.fibres, segments);
+    element.overlap_fraction = overlap_fraction(element.fibres, segments, options.stopped);
     element.mass_g_per_m2 = mass_of(element.fibres, segments, cloth);
     element.warp_cover = 2 * warp.mean_half_width() / warp.spacing;
     element.weft_cover = 2 * weft.mean_half_width() / weft.spacing;

@@ -39,7 +39,7 @@ struct MicroElementOptions {
     /// Repeats of the draft along both yarns that the cell has at least: the paper's extended
     /// micro-element. The longer the cell, the less twist is rounded to close.
     int least_repeats = 1;
-    StopSignal stopped{}; ///< asked before each yarn is wound
+    StopSignal stopped{}; ///< asked before each fibre is wound
 };
 
 /// Builds the micro-element (the paper, section 3). FileError (at the cloth's path) where the

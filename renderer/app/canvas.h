@@ -1,7 +1,7 @@
 #pragma once
 
-#include "renderer/core/png.h"
-
+#include <algorithm>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -27,15 +27,23 @@ class Canvas {
             bytes_[3 * (static_cast<size_t>(y) * width_ + x) + c] =
                 static_cast<uint8_t>(255 * glm::clamp(colour[c], 0.0f, 1.0f) + 0.5f);
     }
+    Colour at(int x, int y) const {
+        const uint8_t* p = &bytes_[3 * (static_cast<size_t>(y) * width_ + x)];
+        return glm::vec3(p[0], p[1], p[2]) / 255.0f;
+    }
+    /// Covers a share of the pixel.
+    void blend(int x, int y, const Colour& colour, float share) {
+        if (share > 0 && x >= 0 && y >= 0 && x < width_ && y < height())
+            set(x, y, glm::mix(at(x, y), colour, std::min(share, 1.0f)));
+    }
     /// Pixels [low, high).
     void fill(const glm::ivec2& low, const glm::ivec2& high, const Colour& colour) {
         for (int y = low.y; y < high.y; ++y)
             for (int x = low.x; x < high.x; ++x)
                 set(x, y, colour);
     }
-    void write(const std::filesystem::path& png) const {
-        write_png_bytes(bytes_, width_, height(), 3, png);
-    }
+    /// RGB, row 0 at the top.
+    const std::vector<uint8_t>& bytes() const { return bytes_; }
 
   private:
     int width_;

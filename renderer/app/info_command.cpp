@@ -37,7 +37,8 @@ void add_info_command(CLI::App& app) {
         ->required();
     command->add_flag("--json", options->json, "For programs");
     command->add_option("--picture", options->picture,
-                        "PNG to draw: a draft's drawdown, a cloth's fibres, a table's hemispheres");
+                        "PNG or SVG to draw: a draft's drawdown, a cloth's fibres, where a table "
+                        "sends light and its errors, a model's warp");
     command->callback([options] {
         if (!options->picture.empty())
             return draw_picture(options->file, options->picture);

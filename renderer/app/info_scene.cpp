@@ -69,12 +69,19 @@ Info scene_info(const std::filesystem::path& path) {
         info.json["lights"].push_back(light.type);
     for (const auto& [name, material] : scene.named_materials)
         info.json["materials"].push_back(name);
-    info.text =
-        fmt::format("Scene {} × {}, {} samples per pixel, {} shapes, {} lights\n", size.x, size.y,
-                    scene.settings.samples, scene.shapes.size(), scene.lights.size());
+    const auto shining = std::ranges::count_if(
+        scene.shapes, [](const ShapeDescription& shape) { return shape.area_light.has_value(); });
+    info.text = fmt::format(
+        "Scene {} × {}, {} samples per pixel, {} shapes, of which {} shine, {} other lights\n",
+        size.x, size.y, scene.settings.samples, scene.shapes.size(), shining, scene.lights.size());
+    for (const ShapeDescription& shape : scene.shapes)
+        if (const std::string file = shape.params.get_string("filename", ""); !file.empty())
+            fmt::format_to(std::back_inserter(info.text), "{}: {}\n", shape.type, file);
     for (const auto& [name, material] : scene.named_materials)
-        fmt::format_to(std::back_inserter(info.text), "material \"{}\": {}\n", name,
-                       material->type);
+        fmt::format_to(std::back_inserter(info.text), "material \"{}\": {}{}\n", name,
+                       material->type,
+                       material->type == "cloth" ? ' ' + material->params.get_string("filename", "")
+                                                 : std::string());
     return info;
 }
 

@@ -3,6 +3,7 @@
 #include "renderer/app/info.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <iterator>
@@ -81,18 +82,39 @@ nlohmann::ordered_json incident_json(const BsdfTable& table) {
     return incident;
 }
 
+/// Which of many directions a person wants to see: light along the normal, and at about 50° and
+/// the steepest angle along weft and warp, of each side.
+bool is_telling(const nlohmann::ordered_json& from, double steepest) {
+    const double theta = from["theta"], phi = from["phi"];
+    const bool along = std::abs(phi) < 0.01 || std::abs(phi - 90) < 0.01;
+    return theta < 0.01 || (along && (std::abs(theta - 50) < 5 || theta > steepest - 0.01));
+}
+
+/// A line for each direction, or of many for some.
 std::string incident_text(const nlohmann::ordered_json& incident) {
+    constexpr size_t kFew = 24;
+    double steepest = 0;
+    for (const nlohmann::ordered_json& from : incident)
+        steepest = std::max(steepest, from["theta"].get<double>());
+    size_t left_out = 0;
     const auto numbers = [](const nlohmann::ordered_json& values) {
         return fmt::format("{:.4f}", fmt::join(values.get<std::vector<double>>(), " "));
     };
     std::string text;
-    for (const nlohmann::ordered_json& from : incident)
+    for (const nlohmann::ordered_json& from : incident) {
+        if (incident.size() > kFew && !is_telling(from, steepest)) {
+            ++left_out;
+            continue;
+        }
         text += fmt::format("{:5} θ {:4.1f}° φ {:5.1f}°: R {}, T {}, unscattered {}, absorbed {}, "
                             "accuracy {:.4f}\n",
                             from["side"].get<std::string>(), from["theta"].get<double>(),
                             from["phi"].get<double>(), numbers(from["R"]), numbers(from["T"]),
                             numbers(from["unscattered"]), numbers(from["absorbed"]),
                             from["accuracy"].get<double>());
+    }
+    if (left_out > 0)
+        text += fmt::format("{} more directions: --json\n", left_out);
     return text;
 }
 

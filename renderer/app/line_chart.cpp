@@ -1,10 +1,10 @@
 #include "renderer/app/line_chart.h"
 
+#include "renderer/app/svg.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fmt/format.h>
-#include <iterator>
 
 namespace rapport {
 namespace {
@@ -14,19 +14,6 @@ constexpr double kLeft = 64, kRight = 16, kTop = 34, kBottom = 48, kLegend = 30;
 
 /// Told apart by people who see colours differently (Okabe & Ito 2008).
 constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
-
-std::string xml(const std::string& text) {
-    std::string escaped;
-    for (const char c : text) {
-        if (c == '&')
-            escaped += "&amp;";
-        else if (c == '<')
-            escaped += "&lt;";
-        else
-            escaped += c;
-    }
-    return escaped;
-}
 
 /// 1, 2 or 5 times a power of ten, so that `range` takes four to ten of them.
 double tick_for(double range) {
@@ -46,28 +33,7 @@ struct Axes {
     double y(double value) const { return top + kHeight * (1 - value / y_high); }
 };
 
-class Drawing {
-  public:
-    template <class... Arguments>
-    void add(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-        fmt::format_to(std::back_inserter(text_), format, std::forward<Arguments>(arguments)...);
-    }
-    void text(double x, double y, const char* anchor, const std::string& words,
-              const char* more = "") {
-        add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
-            xml(words));
-    }
-    void line(double x1, double y1, double x2, double y2, const std::string& style) {
-        add("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", x1, y1, x2, y2,
-            style);
-    }
-    std::string take() { return std::move(text_); }
-
-  private:
-    std::string text_;
-};
-
-void draw_axes(Drawing& drawing, const Axes& axes, const ChartPanel& panel) {
+void draw_axes(Svg& drawing, const Axes& axes, const ChartPanel& panel) {
     const double right = axes.left + kWidth, bottom = axes.top + kHeight;
     const std::string grid = "stroke=\"#dddddd\"";
     for (double x = std::ceil(axes.x_low / axes.x_tick) * axes.x_tick;
@@ -92,7 +58,7 @@ void draw_axes(Drawing& drawing, const Axes& axes, const ChartPanel& panel) {
                  fmt::format(" transform=\"rotate(-90 {:.1f} {:.1f})\"", x, y).c_str());
 }
 
-void draw_curve(Drawing& drawing, const Axes& axes, const ChartCurve& curve, const char* colour) {
+void draw_curve(Svg& drawing, const Axes& axes, const ChartCurve& curve, const char* colour) {
     if (curve.mark)
         drawing.line(axes.x(*curve.mark), axes.top, axes.x(*curve.mark), axes.top + kHeight,
                      fmt::format("stroke=\"{}\" stroke-dasharray=\"2 4\"", colour));
@@ -109,7 +75,7 @@ void draw_curve(Drawing& drawing, const Axes& axes, const ChartCurve& curve, con
     drawing.add("\"/>\n");
 }
 
-void draw_legend(Drawing& drawing, const ChartPanel& panel) {
+void draw_legend(Svg& drawing, const ChartPanel& panel) {
     double x = kLeft;
     for (size_t i = 0; i < panel.curves.size(); ++i) {
         const std::string& label = panel.curves[i].label;
@@ -139,11 +105,7 @@ std::string line_chart_svg(std::span<const ChartPanel> panels, int columns, doub
     const size_t wide = static_cast<size_t>(columns), rows = (panels.size() + wide - 1) / wide;
     const double width = static_cast<double>(columns) * column_width;
     const double height = kLegend + static_cast<double>(rows) * row_height;
-    Drawing drawing;
-    drawing.add("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-                "viewBox=\"0 0 {0} {1}\" font-family=\"sans-serif\" font-size=\"12\">\n"
-                "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-                width, height);
+    Svg drawing(width, height);
     if (!panels.empty())
         draw_legend(drawing, panels[0]);
     for (size_t i = 0; i < panels.size(); ++i) {
@@ -160,8 +122,7 @@ std::string line_chart_svg(std::span<const ChartPanel> panels, int columns, doub
         for (size_t k = 0; k < panels[i].curves.size(); ++k)
             draw_curve(drawing, axes, panels[i].curves[k], kColours[k % kColours.size()]);
     }
-    drawing.add("</svg>\n");
-    return drawing.take();
+    return std::move(drawing).take();
 }
 
 } // namespace rapport

@@ -1,3 +1,4 @@
+#include "renderer/app/measuring_line.h"
 #include "renderer/app/scene_options.h"
 #include "renderer/core/input_file.h"
 #include "renderer/core/progress.h"
@@ -7,6 +8,7 @@
 #include "renderer/scene/scene_file.h"
 #include "renderer/scene/table_loader.h"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <fmt/format.h>
@@ -89,9 +91,15 @@ Film render_watched(const Scene& scene, const CommonOptions& common,
         line.emplace(std::cerr, "rendering");
     std::signal(SIGINT, [](int) { interrupted = 1; });
     RenderWatcher watcher;
+    const auto start = std::chrono::steady_clock::now();
+    const double pixels =
+        static_cast<double>(scene.camera.resolution.x) * scene.camera.resolution.y;
     watcher.progress = [&](double fraction, double samples) {
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         if (line)
-            line->update(fraction, fmt::format("{:.4g} samples", samples));
+            line->update(fraction, fmt::format("{:.4g} samples, {:.2f} M paths/s", samples,
+                                               1e-6 * samples * pixels / std::max(seconds, 1e-6)));
     };
     watcher.stopped = [] { return interrupted != 0; };
     Film film = render(scene, watcher, checkpoint);
@@ -134,18 +142,15 @@ void run(const RenderOptions& options, const CommonOptions& common) {
     InputLog files;
     const SceneDescription description = describe(options, common);
     const std::vector<std::filesystem::path> paths = outputs(options, description.settings.output);
-    std::optional<ProgressLine> line;
-    TableLoader tables(options.accuracy, common.seed,
-                       [&](const std::filesystem::path& path, double accuracy, double fraction) {
-                           if (!shows_progress(common))
-                               return;
-                           if (!line)
-                               line.emplace(std::cerr, "measuring " + path.filename().string());
-                           line->update(fraction, fmt::format("accuracy {:.4f}", accuracy));
-                       });
+    MeasuringLine line(common);
+    TableLoader tables(
+        options.accuracy, common.seed,
+        [&](const std::filesystem::path& path, const GoniophotometerProgress& progress) {
+            line.update(path, progress);
+        });
     std::vector<std::string> warnings;
     const Scene scene = load(options, description, tables, warnings);
-    line.reset();
+    line.end();
     if (!common.quiet)
         for (const std::string& warning : warnings)
             fmt::print(stderr, "warning: {}\n", warning);

@@ -1,16 +1,15 @@
 #include "materials/table/bsdf_table.h"
 #include "renderer/app/commands.h"
 #include "renderer/app/info.h"
+#include "renderer/app/measuring_line.h"
 #include "renderer/app/scan_files.h"
 #include "renderer/core/atomic_file.h"
 #include "renderer/core/error.h"
 #include "renderer/core/input_file.h"
-#include "renderer/core/progress.h"
 #include "vgsp/measure_cloth.h"
 
 #include <charconv>
 #include <fmt/format.h>
-#include <iostream>
 #include <memory>
 #include <optional>
 
@@ -120,15 +119,9 @@ void run(const VgspOptions& options, const CommonOptions& common) {
     const std::filesystem::path output =
         options.output.empty() ? path.filename().replace_extension(scanning ? ".csv" : ".bsdf")
                                : std::filesystem::path(options.output);
-    std::optional<ProgressLine> line;
-    if (shows_progress(common))
-        line.emplace(std::cerr, "measuring");
+    MeasuringLine line(common);
     const auto watch = [&](const GoniophotometerProgress& progress) {
-        if (line)
-            line->update(progress.fraction,
-                         fmt::format("accuracy {:.4f}, {:.0f} k paths/s", progress.accuracy,
-                                     1e-3 * progress.paths_per_second),
-                         progress.seconds_left);
+        line.update(path, progress);
     };
     if (scanning)
         return scan(cloth, output, options, measure.goniophotometer, watch, common.quiet);
@@ -138,7 +131,7 @@ void run(const VgspOptions& options, const CommonOptions& common) {
         fmt::print(stderr, "{}: not there, so the measurement starts from the beginning\n",
                    measure.checkpoint.path.string());
     const ClothMeasurement result = measure_cloth(cloth, measure, watch);
-    line.reset();
+    line.end();
     write_table(result.table, output);
     std::filesystem::remove(measure.checkpoint.path);
     if (common.quiet)

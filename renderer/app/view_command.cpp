@@ -1,3 +1,4 @@
+#include "renderer/app/measuring_line.h"
 #include "renderer/app/scene_options.h"
 #include "renderer/core/input_file.h"
 #include "renderer/preview/view.h"
@@ -19,8 +20,13 @@ void run(const ViewOptions& options, const CommonOptions& common) {
     if (!options.screenshot.empty() && lower_extension(options.screenshot) != ".png")
         throw FileError("command line", "--screenshot", "a file that ends in .png",
                         options.screenshot);
+    MeasuringLine line(common);
     Session session(
-        {options.scene, options.cloth_of_material(), options.colourway_of_material(), common.seed});
+        {options.scene, options.cloth_of_material(), options.colourway_of_material(), common.seed},
+        [&](const std::filesystem::path& cloth, const GoniophotometerProgress& progress) {
+            line.update(cloth, progress);
+        });
+    line.end();
     view(session, size, {options.frames, options.screenshot});
 }
 

@@ -11,18 +11,23 @@
 
 namespace rapport {
 
-void write_png_bytes(std::span<const uint8_t> bytes, int width, int height, int channels,
-                     const std::filesystem::path& path) {
+std::string png_file(std::span<const uint8_t> bytes, int width, int height, int channels) {
     if (bytes.size() != static_cast<size_t>(width) * height * channels)
         throw std::invalid_argument("a PNG needs all of its pixels");
-    write_stream_atomically(path, [&](std::ofstream& stream) {
-        const auto append = [](void* to, void* data, int size) {
-            static_cast<std::ofstream*>(to)->write(static_cast<const char*>(data), size);
-        };
-        if (!stbi_write_png_to_func(append, &stream, width, height, channels, bytes.data(),
-                                    channels * width))
-            throw std::bad_alloc(); // the only way in which stb fails here
-    });
+    std::string file;
+    const auto append = [](void* to, void* data, int size) {
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data), size);
+    };
+    if (!stbi_write_png_to_func(append, &file, width, height, channels, bytes.data(),
+                                channels * width))
+        throw std::bad_alloc(); // the only way in which stb fails here
+    return file;
+}
+
+void write_png_bytes(std::span<const uint8_t> bytes, int width, int height, int channels,
+                     const std::filesystem::path& path) {
+    const std::string file = png_file(bytes, width, height, channels);
+    write_stream_atomically(path, [&](std::ofstream& stream) { stream << file; });
 }
 
 void write_png(const Image& image, const std::filesystem::path& path) {

@@ -25,7 +25,18 @@ class Streaks {
   public:
     Streaks(const Image& rendered, const Camera& camera)
         : image_(rendered), camera_(camera), rays_(camera), normal_(planes(rendered, "N")),
-          warp_(planes(rendered, "warp")), depth_(*rendered.find("Z")) {}
+          warp_(planes(rendered, "warp")), depth_(*rendered.find("Z")), ways_(depth_.size()),
+          noise_(depth_.size()) {
+        parallel_for(static_cast<size_t>(image_.height), [&](size_t row) {
+            for (int x = 0; x < image_.width; ++x) {
+                const glm::ivec2 pixel(x, static_cast<int>(row));
+                if (depth_[index(pixel)] == 0)
+                    continue;
+                ways_[index(pixel)] = direction(pixel);
+                noise_[index(pixel)] = noise(pixel);
+            }
+        });
+    }
 
     Image draw() const {
         Image drawn(image_.width, image_.height, {"R", "G", "B"});
@@ -82,13 +93,13 @@ class Streaks {
 
     /// Mean of the noise along the streak through a pixel.
     float smeared(const glm::ivec2& start) const {
-        float sum = noise(start);
+        float sum = noise_[index(start)];
         int count = 1;
         for (const float sign : {1.0f, -1.0f}) {
             glm::vec2 place = glm::vec2(start) + 0.5f;
-            glm::vec2 before = sign * direction(start);
+            glm::vec2 before = sign * ways_[index(start)];
             for (int step = 0; step < kReach; ++step) {
-                glm::vec2 way = direction(glm::ivec2(place));
+                glm::vec2 way = ways_[index(glm::ivec2(place))];
                 if (glm::dot(way, before) < 0) // the warp has no sign on the picture
                     way = -way;
                 place +=
@@ -98,7 +109,7 @@ class Streaks {
                 if (way == glm::vec2(0) || pixel.x < 0 || pixel.y < 0 || pixel.x >= image_.width ||
                     pixel.y >= image_.height || depth_[index(pixel)] == 0)
                     break;
-                sum += noise(pixel);
+                sum += noise_[index(pixel)];
                 ++count;
             }
         }
@@ -111,6 +122,8 @@ class Streaks {
     const CameraRays rays_;
     const Planes normal_, warp_;
     const std::vector<float>& depth_;
+    std::vector<glm::vec2> ways_; ///< of each pixel that shows something: direction()
+    std::vector<float> noise_;    ///< and noise()
 };
 
 } // namespace

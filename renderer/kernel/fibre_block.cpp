@@ -88,6 +88,12 @@ struct Callbacks {
         has_read(block);
     }
 
+    /// Embree asks whether it is to go on with the hierarchy.
+    static bool goes_on(void* stop_signal, double) {
+        const auto& stopped = *static_cast<const StopSignal*>(stop_signal);
+        return !(stopped && stopped());
+    }
+
     /// The origin is within rounding of this copy's surface, or inside its cylinder: decided in
     /// double precision. Returns the distance to the entry if that lies ahead.
     static std::optional<float> entry_near_origin(Query& query, const FibreBlock::Copy& copy,
@@ -159,7 +165,7 @@ struct Callbacks {
     }
 };
 
-FibreBlock::FibreBlock(const FibreAssembly& assembly)
+FibreBlock::FibreBlock(const FibreAssembly& assembly, const StopSignal& stopped)
     : cell_(assembly.cell), segments_(fibre_segments(assembly)),
       embree_(std::make_unique<Embree>()) {
     if (segments_.empty())
@@ -170,6 +176,7 @@ FibreBlock::FibreBlock(const FibreAssembly& assembly)
             to_shift(std::round(chain.period.x / cell_.x), std::round(chain.period.y / cell_.y)));
     }
     measure_extent();
+    throw_if(stopped);
     fill();
     const RTCDevice device = embree_->device.get();
     const embree::Geometry geometry = embree::make_geometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -180,8 +187,11 @@ FibreBlock::FibreBlock(const FibreAssembly& assembly)
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometry(embree_->scene.get(), geometry.get());
     rtcSetSceneBuildQuality(embree_->scene.get(), RTC_BUILD_QUALITY_HIGH);
+    rtcSetSceneProgressMonitorFunction(embree_->scene.get(), Callbacks::goes_on,
+                                       const_cast<StopSignal*>(&stopped));
     rtcCommitScene(embree_->scene.get());
     all_have_read(*this);
+    throw_if(stopped); // before Embree's complaint that it was
     embree::check(device);
 }
 FibreBlock::~FibreBlock() = default;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/core/stop_signal.h"
 #include "renderer/kernel/fibres.h"
 
 #include <memory>
@@ -22,7 +23,7 @@ struct Shift {
 /// precision, so that neighbouring fibres may touch.
 class FibreBlock {
   public:
-    explicit FibreBlock(const FibreAssembly& assembly);
+    FibreBlock(const FibreAssembly& assembly, const StopSignal& stopped);
     ~FibreBlock();
 
     /// What a block takes while it is made, at most [bytes].

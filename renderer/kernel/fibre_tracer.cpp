@@ -109,8 +109,8 @@ FibrePoint FibreTracer::Implementation::leave(glm::dvec3 origin, const glm::dvec
     }
 }
 
-FibreTracer::FibreTracer(const FibreAssembly& assembly)
-    : implementation_(new Implementation{FibreBlock(assembly)}) {}
+FibreTracer::FibreTracer(const FibreAssembly& assembly, const StopSignal& stopped)
+    : implementation_(new Implementation{FibreBlock(assembly, stopped)}) {}
 FibreTracer::~FibreTracer() = default;
 FibreTracer::FibreTracer(FibreTracer&&) noexcept = default;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/core/stop_signal.h"
 #include "renderer/kernel/fibres.h"
 
 #include <memory>
@@ -22,7 +23,8 @@ struct FibrePoint {
 class FibreTracer {
   public:
     /// Throws std::invalid_argument as fibre_segments does, and for an assembly without fibres.
-    explicit FibreTracer(const FibreAssembly& assembly);
+    /// Throws Stopped when told to stop while it builds its hierarchy.
+    explicit FibreTracer(const FibreAssembly& assembly, const StopSignal& stopped = {});
     ~FibreTracer();
     FibreTracer(FibreTracer&&) noexcept;
 

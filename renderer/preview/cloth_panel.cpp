@@ -24,6 +24,39 @@ void draw_curve(const char* label, const std::vector<float>& curve) {
 
 } // namespace
 
+/// Under the light that draw_light() has dragged about.
+void ClothPanel::draw_fibres(const ClothTable& table, float pixel_ratio) {
+    if (!table.swatch) {
+        ImGui::TextDisabled("a stored table has no fibres");
+        return;
+    }
+    const float width = ImGui::GetContentRegionAvail().x;
+    const ImVec2 corner = ImGui::GetCursorScreenPos(), size(width, std::floor(0.45f * width));
+    // A window of its own, lest the wheel scroll the panel.
+    ImGui::BeginChild("fibres", size, false,
+                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+    ImGui::InvisibleButton("picture", size);
+    fibres_.show(table.swatch, disc_direction(light_),
+                 glm::max(glm::ivec2(size.x * pixel_ratio, size.y * pixel_ratio), 1));
+    const ImGuiIO& io = ImGui::GetIO();
+    if (const glm::vec2 way(io.MouseDelta.x, io.MouseDelta.y);
+        ImGui::IsItemActive() && way != glm::vec2(0))
+        fibres_.orbit(pixel_ratio * way);
+    if (ImGui::IsItemHovered() && io.MouseWheel != 0)
+        fibres_.zoom(io.MouseWheel);
+    if (const auto picture = fibres_.picture(); picture && picture != shown_fibres_) {
+        if (!fibre_picture_)
+            fibre_picture_ = std::make_unique<Texture>();
+        fibre_picture_->set(displayed(picture->image, picture->camera, {}), picture->image.width,
+                            picture->image.height);
+        shown_fibres_ = picture;
+    }
+    if (fibre_picture_)
+        ImGui::GetWindowDrawList()->AddImage(fibre_picture_->id(), corner,
+                                             {corner.x + size.x, corner.y + size.y});
+    ImGui::EndChild();
+}
+
 void ClothPanel::draw_light(const ClothTable& table) {
     const std::shared_ptr<const TableBsdf>& bsdf = table.dyed.at("");
     const bool stale =
@@ -72,7 +105,7 @@ void ClothPanel::draw_save(Session& session, const std::filesystem::path& file) 
     session.save_cloth(file, file.parent_path() / target_);
 }
 
-void ClothPanel::draw(Session& session, const std::filesystem::path& file) {
+void ClothPanel::draw(Session& session, const std::filesystem::path& file, float pixel_ratio) {
     const auto found = session.documents().find(file);
     if (found == session.documents().end()) {
         ImGui::TextWrapped("No cloth is worn: choose one at the left.");
@@ -108,6 +141,8 @@ void ClothPanel::draw(Session& session, const std::filesystem::path& file) {
             session.edit_cloth(file, cloth_);
         draw_save(session, file);
     }
+    if (document.table && ImGui::CollapsingHeader("Fibres", ImGuiTreeNodeFlags_DefaultOpen))
+        draw_fibres(*document.table, pixel_ratio);
     if (document.table && ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen))
         draw_light(*document.table);
     ImGui::PopItemWidth();

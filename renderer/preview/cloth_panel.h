@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/preview/fibre_view.h"
 #include "renderer/preview/session.h"
 #include "renderer/preview/window.h"
 
@@ -9,9 +10,10 @@ namespace rapport {
 class ClothPanel {
   public:
     /// Draws it into the current ImGui window for the cloth `file` of the session.
-    void draw(Session& session, const std::filesystem::path& file);
+    void draw(Session& session, const std::filesystem::path& file, float pixel_ratio);
 
   private:
+    void draw_fibres(const ClothTable& table, float pixel_ratio);
     void draw_light(const ClothTable& table);
     void draw_save(Session& session, const std::filesystem::path& file);
 
@@ -26,6 +28,9 @@ class ClothPanel {
     glm::vec2 mapped_light_{0};
     bool mapped_transmitted_ = false;
     std::unique_ptr<Texture> map_;
+    FibreView fibres_;
+    std::shared_ptr<const TracedPicture> shown_fibres_;
+    std::unique_ptr<Texture> fibre_picture_;
     std::vector<float> weft_curve_, warp_curve_;
 };
 

@@ -33,14 +33,20 @@ ClothTable ready(BsdfTable table, std::shared_ptr<const Cloth> cloth, const std:
     return made;
 }
 
+ClothTable ready(const RisingMeasurement& measurement, const std::filesystem::path& file) {
+    ClothTable made = ready(measurement.table(), measurement.cloth(), file.string());
+    made.swatch = measurement.swatch();
+    return made;
+}
+
 } // namespace
 
-ClothTable first_table(const std::filesystem::path& file) {
+ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch) {
     if (is_stored(file))
         return ready(read_table(file), nullptr, file.string());
     RisingMeasurement measurement(read(file));
-    measurement.advance({});
-    return ready(measurement.table(), measurement.cloth(), file.string());
+    measurement.advance({}, watch);
+    return ready(measurement, file);
 }
 
 ClothWorker::ClothWorker() : thread_([this] { run(); }) {}
@@ -147,7 +153,7 @@ bool ClothWorker::advance(Task& task, const StopSignal& stopped) {
                       measurement.paths() >= kMostPaths;
     if (done || measurement.paths() >= 2 * task.told_paths) {
         task.told_paths = measurement.paths();
-        tell_of(ready(measurement.table(), measurement.cloth(), task.file.string()));
+        tell_of(ready(measurement, task.file));
     }
     return !done;
 }

@@ -18,12 +18,13 @@ struct ClothTable {
     std::shared_ptr<const Cloth> cloth;     ///< nothing for a table that was stored
     std::shared_ptr<const BsdfTable> table; ///< of all colourways
     std::map<std::string, std::shared_ptr<const TableBsdf>> dyed; ///< by colourway; "" = its own
-    double accuracy = 0;                                          ///< ε
-    double seconds = 0;                                           ///< since it was asked for
+    std::shared_ptr<const FibreSwatch> swatch; ///< its fibres; nothing for a stored table
+    double accuracy = 0;                       ///< ε
+    double seconds = 0;                        ///< since it was asked for
 };
 
 /// Reads a `.bsdf`, or measures a `.toml` or `.wif` in haste.
-ClothTable first_table(const std::filesystem::path& file);
+ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch = {});
 
 /// Gets cloths' tables in the background: stored ones are read, others measured at rising accuracy
 /// down to ε = 0.1, the coarsest table first. What is asked for takes the place of what was asked

@@ -1,10 +1,14 @@
 #pragma once
 
+#include "renderer/scene/shape/fibre_swatch.h"
 #include "vgsp/measure_cloth.h"
 
 #include <memory>
 
 namespace rapport {
+
+/// Told of a measurement while it goes on.
+using MeasuringWatch = std::function<void(const GoniophotometerProgress&)>;
 
 /// Measures a cloth in rounds, of whose results the mean is taken, so that there is a table soon
 /// and a better one after every round. The first round is hasty: fibres of coarser cylinders,
@@ -16,19 +20,22 @@ class RisingMeasurement {
 
     /// One more round. Throws FileError for a cloth that cannot exist, and Stopped, leaving all as
     /// it was.
-    void advance(const StopSignal& stopped);
+    void advance(const StopSignal& stopped, const MeasuringWatch& watch = {});
 
     int rounds() const { return rounds_; }
     /// Of all sides and directions; ε is that of the mean, errors of rounds being independent.
     const BsdfTable& table() const { return table_; }
     uint64_t paths() const { return table_.paths.empty() ? 0 : table_.paths[0]; } ///< per direction
     const std::shared_ptr<const Cloth>& cloth() const { return cloth_; }
+    /// The fibres of the last round, a square of some threads to look at; nothing before the first.
+    std::shared_ptr<const FibreSwatch> swatch() const { return bench_ ? bench_->swatch : nullptr; }
 
   private:
     struct Bench {
         bool hasty;
-        kernel::FibreTracer tracer;
+        std::shared_ptr<const kernel::FibreTracer> tracer;
         ClothOptics optics;
+        std::shared_ptr<const FibreSwatch> swatch;
     };
     std::unique_ptr<const Bench> set_up(bool hasty, const GoniophotometerSettings& settings) const;
 

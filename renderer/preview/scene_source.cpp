@@ -5,7 +5,8 @@
 
 namespace rapport {
 
-LoadedScene load_scene(const SceneSource& source, const ClothTables& known) {
+LoadedScene load_scene(const SceneSource& source, const ClothTables& known,
+                       const LoadingWatch& watch) {
     LoadedScene loaded;
     const auto load_table = [&](const std::filesystem::path& path, const std::string& colourway) {
         const std::filesystem::path file = std::filesystem::weakly_canonical(path);
@@ -13,7 +14,11 @@ LoadedScene load_scene(const SceneSource& source, const ClothTables& known) {
         if (const auto found = known.find(file); !table && found != known.end())
             table = found->second;
         if (!table)
-            table = std::make_shared<const ClothTable>(first_table(file));
+            table = std::make_shared<const ClothTable>(
+                first_table(file, [&](const GoniophotometerProgress& progress) {
+                    if (watch)
+                        watch(path, progress);
+                }));
         return in_colourway(*table, file, colourway);
     };
     SceneDescription description = read_scene(source.path, {1024, 1024});

@@ -23,9 +23,14 @@ struct LoadedScene {
     std::vector<std::string> warnings;
 };
 
+/// Told while the cloth `file` is being measured.
+using LoadingWatch =
+    std::function<void(const std::filesystem::path& file, const GoniophotometerProgress&)>;
+
 /// Reads the scene and all that it names. Tables in `known` are taken as they are; other cloths are
 /// read, or measured in haste. FileError as from what is read.
-LoadedScene load_scene(const SceneSource& source, const ClothTables& known = {});
+LoadedScene load_scene(const SceneSource& source, const ClothTables& known = {},
+                       const LoadingWatch& watch = {});
 
 /// The table that a material asks for. FileError for a colourway that the cloth has not.
 std::shared_ptr<const TableBsdf> in_colourway(const ClothTable& table,

@@ -38,8 +38,8 @@ bool ready(const auto& future) {
 
 } // namespace
 
-Session::Session(SceneSource source) : source_(std::move(source)) {
-    take(load_scene(source_));
+Session::Session(SceneSource source, const LoadingWatch& watch) : source_(std::move(source)) {
+    take(load_scene(source_, {}, watch));
     watch_.add(source_.path);
 }
 
@@ -181,6 +181,18 @@ void Session::save_cloth(const std::filesystem::path& file, const std::filesyste
     });
 }
 
+void Session::rescue(const std::string& why) {
+    notes_.push_back(why);
+    for (const auto& [file, document] : documents_)
+        if (document.edited)
+            attempt([&] {
+                const std::string name = file.stem().string() + "-rescued.toml";
+                const std::string text = cloth_text(*document.cloth);
+                write_stream_atomically(name, [&](std::ofstream& stream) { stream << text; });
+                notes_.push_back("saved " + name);
+            });
+}
+
 /// What was worn from `file` is worn from `target`, where it has just been written.
 void Session::go_on_with(const std::filesystem::path& target, const std::filesystem::path& file) {
     documents_[target] = documents_.at(file);
@@ -208,7 +220,8 @@ void Session::save_picture(const std::filesystem::path& exr, const std::filesyst
             image.attributes["command"] = "rapport view " + scene;
             image.attributes["samples"] = std::to_string(shown->samples);
             write_exr(image, exr);
-            write_png_bytes(displayed(image, tone), image.width, image.height, 4, png);
+            write_png_bytes(displayed(image, shown->camera, tone), image.width, image.height, 4,
+                            png);
             return fmt::format("saved {} and {}: {} x {}, {} samples a pixel", exr.string(),
                                png.string(), image.width, image.height, shown->samples);
         } catch (const std::exception& error) {

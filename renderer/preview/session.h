@@ -26,7 +26,7 @@ struct ClothDocument {
 class Session {
   public:
     /// Loads the scene; FileError where it cannot.
-    explicit Session(SceneSource source);
+    explicit Session(SceneSource source, const LoadingWatch& watch = {});
     ~Session();
 
     // What a person does in the picture; positions and ways are in its pixels, y down.
@@ -50,6 +50,10 @@ class Session {
     void save_shown();
     /// A copy of the scene file, seen from where the camera is, beside it; `notes` tells of it.
     void save_camera();
+
+    /// Writes all edited cloths into the working folder, named after their files; `notes` tells of
+    /// it and of `why`.
+    void rescue(const std::string& why);
 
     /// Takes in what the background has finished and what changed on the disk; once a frame.
     void tick();

@@ -2,6 +2,7 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/core/srgb.h"
+#include "renderer/integrator/streaks.h"
 
 #include <algorithm>
 #include <array>
@@ -54,7 +55,7 @@ glm::vec3 at(const Planes& planes, size_t pixel) {
 
 } // namespace
 
-std::vector<uint8_t> displayed(const Image& image, const Tone& tone) {
+std::vector<uint8_t> displayed(const Image& image, const Camera& camera, const Tone& tone) {
     static const SrgbTable srgb;
     std::vector<uint8_t> bytes(4 * static_cast<size_t>(image.width) * image.height, 255);
     const Planes radiance = planes(image, "", "RGB");
@@ -63,22 +64,25 @@ std::vector<uint8_t> displayed(const Image& image, const Tone& tone) {
         const float value = gain * (*light[c])[i];
         return srgb(tone.curve == ToneCurve::film ? film_curve(std::max(value, 0.0f)) : value);
     };
+    Image streaks;
     Planes shown = radiance;
     if (tone.layer == Layer::albedo)
         shown = planes(image, "albedo.", "RGB");
     else if (tone.layer == Layer::normals)
         shown = planes(image, "N.", "XYZ");
-    else if (tone.layer == Layer::warp)
-        shown = planes(image, "warp.", "XYZ");
-    else if (tone.layer == Layer::variance)
+    else if (tone.layer == Layer::warp) {
+        streaks = warp_streaks(image, camera);
+        shown = planes(streaks, "", "RGB");
+    } else if (tone.layer == Layer::variance)
         shown = planes(image, "variance.", "RGB");
     const auto value = [&](size_t i, int c) -> uint8_t {
         switch (tone.layer) {
         case Layer::beauty:
         case Layer::albedo:
             return toned(shown, i, c);
-        case Layer::normals:
-        case Layer::warp: {
+        case Layer::warp:
+            return srgb((*shown[c])[i]);
+        case Layer::normals: {
             const glm::vec3 direction = at(shown, i);
             return direction == glm::vec3(0) ? 0 : linear_byte(0.5f + 0.5f * direction[c]);
         }

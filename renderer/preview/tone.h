@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/core/image.h"
+#include "renderer/scene/camera.h"
 
 #include <cstdint>
 #include <string>
@@ -10,7 +11,8 @@ namespace rapport {
 
 /// Which part of a picture is looked at.
 enum class Layer { beauty, albedo, normals, warp, variance };
-inline constexpr const char* kLayerNames[] = {"picture", "albedo", "normals", "warp", "noise"};
+inline constexpr const char* kLayerNames[] = {"picture", "albedo", "normals", "warp streaks",
+                                              "noise"};
 
 enum class ToneCurve {
     srgb, ///< clipped at white, as PNGs of `rapport render` are
@@ -27,10 +29,10 @@ struct Tone {
     bool operator==(const Tone&) const = default;
 };
 
-/// R, G, B and 255 for each pixel of a picture (Film::image): the beauty and the albedo under the
-/// tone curve; normals and warp directions by colour, −1 to 1 from black to white (black where
-/// there is nothing); the noise as standard error of the pixel's mean over the pixel's radiance,
-/// white at 1 (black while nothing is known of it).
-std::vector<uint8_t> displayed(const Image& image, const Tone& tone);
+/// R, G, B and 255 for each pixel of a picture (Film::image) that `camera` took: the beauty and the
+/// albedo under the tone curve; normals by colour, −1 to 1 from black to white (black where there
+/// is nothing); streaks along the warp (integrator/streaks.h); the noise as standard error of the
+/// pixel's mean over the pixel's radiance, white at 1 (black while nothing is known of it).
+std::vector<uint8_t> displayed(const Image& image, const Camera& camera, const Tone& tone);
 
 } // namespace rapport

@@ -119,7 +119,7 @@ void Tracer::trace(const View& view) {
         if (!pass(view, rays, film, scale == first))
             return;
         if (scale == first || !outdated(view))
-            publish(view, film, scale, 1);
+            publish(view, camera, film, scale, 1);
         if (scale > 1)
             continue;
         Clock::time_point shown = Clock::now();
@@ -133,7 +133,7 @@ void Tracer::trace(const View& view) {
             ++samples;
             if (samples < samples_ && seconds_since(shown) < kShowEvery)
                 continue;
-            publish(view, film, scale, samples);
+            publish(view, camera, film, scale, samples);
             shown = Clock::now();
         }
     }
@@ -171,10 +171,12 @@ bool Tracer::pass(const View& view, const CameraRays& rays, Film& film, bool fir
     return left_out == 0;
 }
 
-void Tracer::publish(const View& view, const Film& film, int scale, int samples) {
+void Tracer::publish(const View& view, const Camera& camera, const Film& film, int scale,
+                     int samples) {
     auto picture = std::make_shared<TracedPicture>();
     picture->view = view.number;
     picture->image = film.image();
+    picture->camera = camera;
     picture->scale = scale;
     picture->samples = samples;
     picture->noise =

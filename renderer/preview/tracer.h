@@ -16,6 +16,7 @@ namespace rapport {
 struct TracedPicture {
     uint64_t view = 0; ///< the number that Tracer::show gave it
     Image image;       ///< Film::image
+    Camera camera;     ///< that took it
     int scale = 1;     ///< pixels of the view along the side of a pixel here
     int samples = 0;   ///< of each pixel
     double noise = 0;  ///< Film::Noise::relative of the whole; infinite from one sample
@@ -64,7 +65,7 @@ class Tracer {
     bool outdated(const View& view) const;
     /// One more sample of every pixel; false if the view was outdated before the end.
     bool pass(const View& view, const CameraRays& rays, Film& film, bool first);
-    void publish(const View& view, const Film& film, int scale, int samples);
+    void publish(const View& view, const Camera& camera, const Film& film, int scale, int samples);
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;

@@ -1,9 +1,11 @@
 #include "renderer/preview/view.h"
 
+#include "renderer/core/error.h"
 #include "renderer/preview/cloth_panel.h"
 #include "renderer/preview/scene_panel.h"
 #include "renderer/preview/window.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 namespace rapport {
@@ -58,7 +60,7 @@ class PictureArea {
         const std::shared_ptr<const TracedPicture> picture = session.picture();
         if (!picture || (picture == shown_ && session.tone == tone_))
             return;
-        texture_.set(displayed(picture->image, session.tone), picture->image.width,
+        texture_.set(displayed(picture->image, picture->camera, session.tone), picture->image.width,
                      picture->image.height);
         shown_ = picture;
         tone_ = session.tone;
@@ -84,33 +86,73 @@ std::filesystem::path first_cloth(const Session& session) {
     return {};
 }
 
+/// The window and what is drawn in it.
+class View {
+  public:
+    View(Session& session, const glm::ivec2& size)
+        : session_(session), window_("rapport " + session.source().path.filename().string(), size),
+          selected_(first_cloth(session)) {}
+
+    /// Frames from number `frame` on; true if it ends because its pictures are lost.
+    bool run(const ViewRun& run, int& frame) {
+        for (; window_.open() && (run.frames == 0 || frame < run.frames); ++frame) {
+            if (run.before_frame)
+                run.before_frame(frame);
+            if (window_.lost())
+                return true;
+            window_.begin_frame(area_.coarse() || ImGui::IsAnyMouseDown() ? 1.0 / 60 : 1.0 / 15);
+            if (!window_.minimised())
+                draw();
+            take_keys();
+            session_.tick();
+            window_.end_frame(frame + 1 == run.frames ? run.screenshot : std::filesystem::path());
+        }
+        return false;
+    }
+    glm::ivec2 size() const { return window_.size(); }
+
+  private:
+    void draw() {
+        const float width = ImGui::GetIO().DisplaySize.x, ratio = window_.pixel_ratio();
+        const float side = std::min(kPanelWidth * ImGui::GetFontSize(), 0.3f * width);
+        part("scene", 0, side, [&] { draw_scene_panel(session_, selected_); });
+        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+        part("picture", side, width - 2 * side, [&] { area_.draw(session_, ratio); });
+        ImGui::PopStyleVar();
+        part("cloth", width - side, side, [&] { cloth_panel_.draw(session_, selected_, ratio); });
+    }
+
+    void take_keys() {
+        if (ImGui::GetIO().WantTextInput)
+            return;
+        if (ImGui::IsKeyPressed('F', false))
+            session_.frame_all();
+        if (ImGui::IsKeyPressed('S', false))
+            session_.save_shown();
+    }
+
+    Session& session_;
+    Window window_; ///< before all that draws in it
+    PictureArea area_;
+    ClothPanel cloth_panel_;
+    std::filesystem::path selected_;
+};
+
 } // namespace
 
 void view(Session& session, const glm::ivec2& size, const ViewRun& run) {
-    Window window("rapport " + session.source().path.filename().string(), size);
-    PictureArea area;
-    ClothPanel cloth_panel;
-    std::filesystem::path selected = first_cloth(session);
-    for (int frame = 0; window.open() && (run.frames == 0 || frame < run.frames); ++frame) {
-        window.begin_frame(area.coarse() || ImGui::IsAnyMouseDown() ? 1.0 / 60 : 1.0 / 15);
-        const float width = ImGui::GetIO().DisplaySize.x;
-        const float side = std::min(kPanelWidth * ImGui::GetFontSize(), 0.3f * width);
-        part("scene", 0, side, [&] { draw_scene_panel(session, selected); });
-        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-        part("picture", side, width - 2 * side, [&] {
-            if (!window.minimised())
-                area.draw(session, window.pixel_ratio());
-        });
-        ImGui::PopStyleVar();
-        part("cloth", width - side, side, [&] { cloth_panel.draw(session, selected); });
-        if (!ImGui::GetIO().WantTextInput) {
-            if (ImGui::IsKeyPressed('F', false))
-                session.frame_all();
-            if (ImGui::IsKeyPressed('S', false))
-                session.save_shown();
-        }
-        session.tick();
-        window.end_frame(frame + 1 == run.frames ? run.screenshot : std::filesystem::path());
+    constexpr int kMostLosses = 3; // more are a driver that will not work
+    glm::ivec2 opened = size;
+    int frame = 0;
+    for (int losses = 0;; ++losses) {
+        View view(session, opened);
+        if (!view.run(run, frame))
+            return;
+        session.rescue("the graphics driver was reset: the window is a new one");
+        if (losses == kMostLosses)
+            throw FileError("window", "", "a graphics driver that keeps its pictures",
+                            fmt::format("{} resets", losses + 1));
+        opened = view.size();
     }
 }
 

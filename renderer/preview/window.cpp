@@ -30,15 +30,19 @@ std::string reason() {
 void load_font(float scale) {
     static const ImWchar ranges[] = {0x20, 0xFF, 0x370, 0x3FF, 0x2010, 0x2033, 0x2190, 0x21FF, 0};
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-    if (std::filesystem::exists(kFont))
+    if (std::filesystem::exists(kFont)) {
         fonts.AddFontFromFileTTF(kFont, std::round(kFontSize * scale), nullptr, ranges);
-    else
-        fonts.AddFontDefault();
+    } else {
+        ImFontConfig config;
+        config.SizePixels = std::round(kFontSize * scale);
+        fonts.AddFontDefault(&config);
+    }
 }
 
 void set_style(float scale) {
-    ImGui::StyleColorsDark();
     ImGuiStyle& style = ImGui::GetStyle();
+    style = {};
+    ImGui::StyleColorsDark();
     style.WindowRounding = style.WindowBorderSize = 0;
     style.FrameRounding = style.GrabRounding = 3;
     style.ItemSpacing = {8, 5};
@@ -71,6 +75,7 @@ Window::Window(const std::string& title, const glm::ivec2& size) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET); // where there is that
     window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
     if (!window_) {
         const std::string why = reason();
@@ -79,17 +84,14 @@ Window::Window(const std::string& title, const glm::ivec2& size) {
     }
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
-    float scale_y;
-    glfwGetWindowContentScale(window_, &text_scale_, &scale_y);
-    text_scale_ = std::clamp(text_scale_, 0.5f, 4.0f);
 
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
-    load_font(text_scale_);
-    set_style(text_scale_);
     ImGui_ImplGlfw_InitForOpenGL(window_, true);
     ImGui_ImplOpenGL3_Init("#version 330 core");
+    set_text_scale(1);
+    follow_screen();
 }
 
 Window::~Window() {
@@ -108,8 +110,40 @@ bool Window::minimised() const {
     return width == 0 || height == 0 || glfwGetWindowAttrib(window_, GLFW_ICONIFIED);
 }
 
+bool Window::lost() const {
+    if (epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness"))
+        return glGetGraphicsResetStatus() != GL_NO_ERROR;
+    if (epoxy_has_gl_extension("GL_ARB_robustness"))
+        return glGetGraphicsResetStatusARB() != GL_NO_ERROR;
+    return false;
+}
+
+glm::ivec2 Window::size() const {
+    glm::ivec2 size;
+    glfwGetWindowSize(window_, &size.x, &size.y);
+    return size;
+}
+
+void Window::set_text_scale(float scale) {
+    ImGui::GetIO().Fonts->Clear();
+    load_font(scale);
+    set_style(scale);
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+void Window::follow_screen() {
+    float scale, scale_y;
+    glfwGetWindowContentScale(window_, &scale, &scale_y);
+    scale = std::clamp(scale, 0.5f, 4.0f);
+    if (scale != screen_scale_)
+        set_text_scale(scale);
+    screen_scale_ = scale;
+}
+
 void Window::begin_frame(double longest_wait) {
     glfwWaitEventsTimeout(longest_wait);
+    follow_screen();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();

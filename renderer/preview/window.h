@@ -22,18 +22,25 @@ class Window {
     /// False once the person has closed it.
     bool open() const;
     bool minimised() const;
+    /// Whether the graphics driver was reset and has forgotten all pictures of this window; another
+    /// window has to take its place. Asks drivers that can tell.
+    bool lost() const;
+    glm::ivec2 size() const; ///< in the system's coordinates
     /// Waits for input, but no longer than so [s], and starts a frame.
     void begin_frame(double longest_wait);
     /// Shows the frame, and writes it as a PNG if a file is named.
     void end_frame(const std::filesystem::path& screenshot = {});
     /// Framebuffer pixels to a unit of ImGui's coordinates.
     float pixel_ratio() const;
-    /// Size of text and of what is clicked, relative to a screen of 96 dpi.
-    float text_scale() const { return text_scale_; }
+    /// Size of text and of what is clicked, relative to a screen of 96 dpi. It follows the window
+    /// from screen to screen; between frames only.
+    void set_text_scale(float scale);
 
   private:
+    void follow_screen();
+
     GLFWwindow* window_ = nullptr;
-    float text_scale_ = 1;
+    float screen_scale_ = 1; ///< that the text has followed
 };
 
 /// A picture for ImGui, while its window is open.

@@ -33,7 +33,7 @@ BsdfTable TableLoader::measure_file(const std::filesystem::path& path) const {
     options.goniophotometer.seed = seed_;
     const auto progress = [&](const GoniophotometerProgress& now) {
         if (progress_)
-            progress_(path, now.accuracy, now.fraction);
+            progress_(path, now);
     };
     return measure_cloth(cloth, options, progress).table;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "materials/table/table_bsdf.h"
+#include "vgsp/goniophotometer.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -15,9 +16,9 @@ namespace rapport {
 /// Each file is read or measured once.
 class TableLoader {
   public:
-    /// Told while `path` is being measured: the accuracy reached and the finished share, [0, 1].
+    /// Told while `path` is being measured.
     using Progress =
-        std::function<void(const std::filesystem::path& path, double accuracy, double fraction)>;
+        std::function<void(const std::filesystem::path& path, const GoniophotometerProgress&)>;
 
     /// `accuracy` is the ε asked of a measurement.
     explicit TableLoader(double accuracy = 0.2, uint64_t seed = 0, Progress progress = {});

@@ -1,8 +1,10 @@
 #include "materials/table/bsdf_table.h"
+#include "tests/support/file_bytes.h"
 #include "tests/support/run_program.h"
 #include "tests/support/synthetic_tables.h"
 #include "tests/support/temporary_folder.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <gtest/gtest.h>
@@ -74,13 +76,54 @@ TEST_F(InfoPicture, AClothIsItsFibres) {
     EXPECT_GT(weft, 0);
 }
 
-TEST_F(InfoPicture, ATableIsItsHemispheres) {
+TEST_F(InfoPicture, ATableIsWhereItSendsLight) {
     const std::string file = (folder_ / "table.bsdf").string();
     write_table(tests::synthetic_table(tests::satin_intensity), file);
     const Png png = draw(file);
-    EXPECT_GT(png.width, png.height);
     EXPECT_GT(png.colours().size(), 100u);
     EXPECT_EQ(png.at(0, 0), (std::array<int, 3>{255, 255, 255}));
+    // The curves of the polar plots, and something dark: their letters.
+    const auto colours = png.colours();
+    EXPECT_TRUE(colours.contains({0, 115, 179}));
+    EXPECT_TRUE(
+        std::ranges::any_of(colours, [](const auto& c) { return c[0] + c[1] + c[2] < 90; }));
+}
+
+TEST_F(InfoPicture, AModelIsItsWarp) {
+    const Png png = draw(kScenes + "garments/dress.glb");
+    EXPECT_EQ(png.width, 900);
+    EXPECT_EQ(png.at(2, 2), (std::array<int, 3>{0, 0, 0})); // beside the dress
+    std::set<std::array<int, 3>> greys;
+    for (int x = 300; x < 600; ++x)
+        greys.insert(png.at(x, 600));
+    EXPECT_GT(greys.size(), 20u);
+}
+
+TEST_F(InfoPicture, TheEndingDecidesTheFormat) {
+    const std::string file = (folder_ / "table.bsdf").string();
+    write_table(tests::synthetic_table(tests::satin_intensity), file);
+    const auto svg = [&](const std::string& of) {
+        const std::string target = (folder_ / "picture.svg").string();
+        const tests::ProgramRun run = tests::run_program({"info", of, "--picture", target});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return tests::read_bytes(target);
+    };
+    const auto count = [](const std::string& text, const std::string& part) {
+        int found = 0;
+        for (size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1))
+            ++found;
+        return found;
+    };
+    const std::string draft = svg(kScenes + "drafts/satin5.wif");
+    EXPECT_EQ(count(draft, "fill=\"#1a1a1f\""), 20); // warp up
+    EXPECT_EQ(count(draft, "fill=\"#ffffff\""), 5);
+    const std::string table = svg(file);
+    EXPECT_EQ(count(table, "<image"), 8);  // three hemispheres and the errors, of both sides
+    EXPECT_EQ(count(table, "#0073b3"), 8); // two plots: a curve's halves, light and key
+    EXPECT_EQ(count(table, "nan"), 0);
+    // The embedded pictures are whole PNGs: the end chunk stands at the end of each.
+    EXPECT_EQ(count(table, "data:image/png;base64,iVBORw0KGgo"), 8);
+    EXPECT_EQ(count(table, "</svg>"), 1);
 }
 
 TEST_F(InfoPicture, RefusesWhatItCannotDraw) {

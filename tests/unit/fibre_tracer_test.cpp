@@ -4,6 +4,7 @@
 #include "tests/support/brute_force_tracer.h"
 #include "tests/support/fibre_assemblies.h"
 
+#include <atomic>
 #include <gtest/gtest.h>
 
 namespace rapport {
@@ -222,6 +223,12 @@ TEST(FibreTracer, MovingTheWindowChangesNothing) {
                                             std::abs(a.point.distance - b.point.distance) < 1e-6));
     }
     EXPECT_GE(agree, kRays - 5);
+}
+
+TEST(FibreTracer, StopsWhenToldTo) {
+    std::atomic<int> asked = 0;
+    EXPECT_THROW(FibreTracer(tests::reference_stack(), [&] { return ++asked > 1; }), Stopped);
+    EXPECT_NO_THROW(FibreTracer(tests::reference_stack(), [] { return false; }));
 }
 
 TEST(FibreTracer, RefusesAnEmptyAssembly) {

@@ -1,4 +1,5 @@
 #include "renderer/integrator/path_tracer.h"
+#include "renderer/preview/fibre_view.h"
 #include "renderer/preview/session.h"
 #include "tests/support/sessions.h"
 
@@ -184,6 +185,54 @@ TEST(Session, SavesThePictureThatIsShown) {
     EXPECT_NE(session.notes().back().find("absent"), std::string::npos);
     session.save_camera();
     EXPECT_EQ(session.notes().back(), "saved " + (files / "scene-view.pbrt").string());
+}
+
+TEST(FibreView, ShowsTheClothThatIsWornFromWhereItIsTurnedTo) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    FibreView view;
+    std::shared_ptr<const TracedPicture> last;
+    const auto next = [&] {
+        tick_until(session, [&] {
+            const auto picture = view.picture();
+            const bool done = picture && picture->scale == 1 && picture->samples >= 16 &&
+                              (!last || picture->view > last->view);
+            if (done)
+                last = picture;
+            return done;
+        });
+        return last->image;
+    };
+    const glm::vec3 light = glm::normalize(glm::vec3(0.5f, 0, 1));
+    view.show(document().table->swatch, light, {48, 24});
+    const Image first = next();
+    EXPECT_GT(mean(first, "R"), 0.01);
+    view.show(document().table->swatch, light, {48, 24}); // the same again
+    EXPECT_EQ(view.picture()->view, last->view);
+    view.orbit({10, 0});
+    const Image turned = next();
+    EXPECT_FALSE(compare(first, turned).agree);
+    view.zoom(2);
+    EXPECT_FALSE(compare(turned, next()).agree);
+    view.show(document().table->swatch, glm::vec3(0, 0, -1), {48, 24}); // from behind
+    EXPECT_FALSE(compare(turned, next()).agree);
+
+    Cloth red = *document().cloth;
+    red.warp.fibre.color = {0.75, 0.05, 0.05};
+    red.weft.fibre.color = {0.75, 0.05, 0.05};
+    session.edit_cloth(files.cloth(), red);
+    tick_until(session, [&] { return !document().waiting; });
+    view.show(document().table->swatch, light, {48, 24});
+    const Image dyed = next();
+    EXPECT_GT(mean(dyed, "albedo.R"), 2 * mean(dyed, "albedo.G"));
+}
+
+TEST(FibreView, AStoredTableHasNoFibres) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    for (const auto& [file, document] : session.documents())
+        EXPECT_EQ(document.table->swatch, nullptr);
 }
 
 TEST(Session, RefusesASceneThatIsNone) {

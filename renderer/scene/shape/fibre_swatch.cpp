@@ -7,6 +7,11 @@
 namespace rapport {
 namespace {
 
+std::shared_ptr<const kernel::FibreTracer> traced_fibres(const Cloth& cloth, uint64_t seed) {
+    return std::make_shared<const kernel::FibreTracer>(
+        build_micro_element(cloth, {.seed = seed}).fibres);
+}
+
 /// The cloth's optics in the dyes of one colourway.
 std::vector<FibreOptics> dyed_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
                                      const std::string& colourway, uint64_t seed) {
@@ -29,11 +34,18 @@ struct FibreSwatch::Exit {
 
 FibreSwatch::FibreSwatch(const Cloth& cloth, const glm::dvec2& size, const std::string& colourway,
                          uint64_t seed)
-    : tracer_(build_micro_element(cloth, {.seed = seed}).fibres),
-      low_(-0.5 * size, tracer_.z_min()), high_(0.5 * size, tracer_.z_max()),
-      media_(media_of_groups(dyed_optics(cloth, tracer_, colourway, seed), cloth.bands.count(),
-                             tracer_)),
-      band_rgb_(cloth.bands.to_rgb()) {}
+    : FibreSwatch(traced_fibres(cloth, seed), cloth, size, colourway, seed) {}
+
+FibreSwatch::FibreSwatch(std::shared_ptr<const kernel::FibreTracer> tracer, const Cloth& cloth,
+                         const glm::dvec2& size, const std::string& colourway, uint64_t seed)
+    : FibreSwatch(tracer, dyed_optics(cloth, *tracer, colourway, seed), cloth.bands, size) {}
+
+FibreSwatch::FibreSwatch(std::shared_ptr<const kernel::FibreTracer> tracer,
+                         const std::vector<FibreOptics>& optics, const Bands& bands,
+                         const glm::dvec2& size)
+    : tracer_(std::move(tracer)), low_(-0.5 * size, tracer_->z_min()),
+      high_(0.5 * size, tracer_->z_max()), media_(media_of_groups(optics, bands.count(), *tracer_)),
+      band_rgb_(bands.to_rgb()) {}
 
 FibreSwatch::Exit FibreSwatch::exit(const glm::dvec3& position, const glm::dvec3& direction) const {
     Exit exit;
@@ -63,7 +75,7 @@ std::optional<FibreSwatch::Passage> FibreSwatch::follow(const glm::dvec3& positi
     const size_t groups = media_.size(), channels = band_rgb_.size() / groups;
     const size_t group =
         groups == 1 ? 0 : std::min(static_cast<size_t>(rng.uniform() * groups), groups - 1);
-    const IncidentPathTracer tracer{tracer_, media_[group], channels,
+    const IncidentPathTracer tracer{*tracer_, media_[group], channels,
                                     GoniophotometerSettings{}.max_events, true};
     IncidentPath path;
     path.start(in_cloth(position), direction, media_[group].size(), channels);
@@ -90,7 +102,7 @@ std::optional<FibreSwatch::Passage> FibreSwatch::pass(const glm::dvec3& position
                                                       const glm::dvec3& direction) const {
     const Exit exit = this->exit(position, direction);
     const kernel::FibreTracer::Entry entry =
-        tracer_.enter(in_cloth(position), direction, kernel::FibreTracer::kNone);
+        tracer_->enter(in_cloth(position), direction, kernel::FibreTracer::kNone);
     if (entry.flight == kernel::FibreTracer::Flight::lost ||
         (entry.flight == kernel::FibreTracer::Flight::enters &&
          entry.point.distance < exit.distance))

@@ -4,6 +4,7 @@
 #include "vgsp/cloth.h"
 #include "vgsp/incident_path.h"
 
+#include <memory>
 #include <optional>
 
 namespace rapport {
@@ -20,6 +21,9 @@ class FibreSwatch {
     /// cloth that cannot exist, a colour out of reach or an unknown colourway.
     FibreSwatch(const Cloth& cloth, const glm::dvec2& size, const std::string& colourway,
                 uint64_t seed = 0);
+    /// Of fibres that are there already; `optics` by their kind.
+    FibreSwatch(std::shared_ptr<const kernel::FibreTracer> tracer,
+                const std::vector<FibreOptics>& optics, const Bands& bands, const glm::dvec2& size);
 
     /// Corners of the box that holds it.
     glm::dvec3 low() const { return low_; }
@@ -40,6 +44,8 @@ class FibreSwatch {
     std::optional<Passage> pass(const glm::dvec3& position, const glm::dvec3& direction) const;
 
   private:
+    FibreSwatch(std::shared_ptr<const kernel::FibreTracer> tracer, const Cloth& cloth,
+                const glm::dvec2& size, const std::string& colourway, uint64_t seed);
     struct Exit;
     Exit exit(const glm::dvec3& position, const glm::dvec3& direction) const;
     Passage passage(const glm::dvec3& position, const glm::dvec3& direction, const Exit& exit,
@@ -52,7 +58,7 @@ class FibreSwatch {
         return {position.x - low_.x, position.y - low_.y, position.z};
     }
 
-    kernel::FibreTracer tracer_;
+    std::shared_ptr<const kernel::FibreTracer> tracer_;
     glm::dvec3 low_, high_;
     std::vector<std::vector<FibreMedium>> media_; ///< of each group of bands that share paths
     std::vector<Rgb> band_rgb_;

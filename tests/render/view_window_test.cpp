@@ -1,0 +1,150 @@
+#include "renderer/preview/view.h"
+#include "renderer/preview/window.h"
+#include "tests/support/sessions.h"
+#include "tests/support/virtual_display.h"
+
+#include <epoxy/gl.h> // before GLFW
+// clang-format off
+#include <GLFW/glfw3.h>
+// clang-format on
+#include <backends/imgui_impl_glfw.h>
+#include <imgui.h>
+#include <stb/stb_image.h>
+
+// The window in this process, on a display without a screen: what happens to it between frames.
+
+namespace rapport {
+namespace {
+
+using tests::next_picture;
+using tests::SquareScene;
+
+class ViewWindow : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (!tests::VirtualDisplay::available())
+            GTEST_SKIP() << "Xvfb (Debian: xvfb) is not here";
+        display_.emplace();
+    }
+    static GLFWwindow* window() { return glfwGetCurrentContext(); }
+
+    std::optional<tests::VirtualDisplay> display_;
+};
+
+glm::ivec2 size_of_png(const std::filesystem::path& file) {
+    glm::ivec2 size(0);
+    int channels;
+    stbi_info(file.c_str(), &size.x, &size.y, &channels);
+    return size;
+}
+
+/// Until how often graphics drivers are reset is told.
+int resets_to_tell = 0;
+PFNGLGETGRAPHICSRESETSTATUSPROC driver_answers;
+
+GLenum APIENTRY tells_of_resets() {
+    return resets_to_tell-- > 0 ? GL_GUILTY_CONTEXT_RESET : driver_answers();
+}
+
+/// Lets the driver tell of so many resets from now on.
+void reset_graphics(int times) {
+    if (epoxy_glGetGraphicsResetStatus != tells_of_resets)
+        driver_answers = std::exchange(epoxy_glGetGraphicsResetStatus, tells_of_resets);
+    resets_to_tell = times;
+}
+
+TEST_F(ViewWindow, ALostOneIsReplacedAndTheEditedClothSaved) {
+    const SquareScene files(SquareScene::Worn::measured);
+    std::filesystem::current_path(files.scene().parent_path());
+    Session session({files.scene()});
+    Cloth edited = *session.documents().at(files.cloth()).cloth;
+    edited.ends_per_cm = 17;
+    session.edit_cloth(files.cloth(), edited);
+    const auto before_frame = [](int frame) {
+        if (frame == 4)
+            glfwSetWindowSize(window(), 500, 400);
+        if (frame == 8)
+            reset_graphics(1);
+    };
+    view(session, {400, 300}, {12, files / "after.png", before_frame});
+    EXPECT_EQ(size_of_png(files / "after.png"), glm::ivec2(500, 400)); // as the one that is gone
+    ASSERT_GE(session.notes().size(), 2u);
+    EXPECT_NE(session.notes()[0].find("driver was reset"), std::string::npos);
+    EXPECT_EQ(session.notes()[1], "saved cloth-rescued.toml");
+    EXPECT_EQ(read_cloth(files / "cloth-rescued.toml").ends_per_cm, 17);
+    EXPECT_NE(next_picture(session, 1), nullptr);
+
+    // One that never keeps a picture is given up.
+    EXPECT_THROW(view(session, {400, 300}, {12, {}, [](int) { reset_graphics(1); }}), FileError);
+    std::filesystem::current_path("/");
+}
+
+TEST_F(ViewWindow, OutlivesAStormOfSizesAndBeingHidden) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    const auto before_frame = [](int frame) {
+        for (int i = 10 * frame; frame < 20 && i < 10 * (frame + 1); ++i)
+            glfwSetWindowSize(window(), i % 13 == 0 ? 1 : 1 + 97 * i % 1200,
+                              i % 17 == 0 ? 1 : 1 + 53 * i % 900);
+        if (frame == 20)
+            glfwIconifyWindow(window());
+        if (frame == 22)
+            glfwHideWindow(window());
+        if (frame == 24)
+            glfwShowWindow(window());
+        if (frame == 25)
+            glfwSetWindowSize(window(), 640, 480);
+    };
+    view(session, {400, 300}, {40, files / "after.png", before_frame});
+    EXPECT_EQ(size_of_png(files / "after.png"), glm::ivec2(640, 480));
+    EXPECT_EQ(session.error(), "");
+    const auto picture = next_picture(session, 1);
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->image.height, 480);
+}
+
+TEST_F(ViewWindow, TheMouseTurnsAndTheWheelBringsNearer) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    std::vector<glm::mat4> poses;
+    const auto before_frame = [&](int frame) {
+        poses.push_back(session.camera().to_world);
+        if (frame == 0)
+            glfwFocusWindow(window());
+        if (frame >= 2)
+            glfwSetCursorPos(window(), 300 + 5 * frame, 200);
+        if (frame == 4 || frame == 8)
+            ImGui_ImplGlfw_MouseButtonCallback(window(), GLFW_MOUSE_BUTTON_LEFT,
+                                               frame == 4 ? GLFW_PRESS : GLFW_RELEASE, 0);
+        if (frame == 12)
+            ImGui_ImplGlfw_ScrollCallback(window(), 0, 2);
+    };
+    view(session, {700, 400}, {18, {}, before_frame});
+    EXPECT_EQ(poses[2], poses[4]);
+    EXPECT_NE(poses[4], poses[10]);
+    EXPECT_EQ(poses[10], poses[12]);
+    EXPECT_NEAR(glm::distance(poses[4][3], poses[10][3]), 0, 2); // turned, about what it looks at
+    EXPECT_NE(poses[12][3], poses[17][3]);
+    EXPECT_EQ(poses[12][2], poses[17][2]); // nearer, in the same direction
+}
+
+TEST_F(ViewWindow, TextFollowsTheScale) {
+    Window window("scale", {320, 240});
+    const auto text_height = [&] {
+        window.begin_frame(0);
+        const float height = ImGui::GetFontSize();
+        ImGui::TextUnformatted("scale");
+        window.end_frame();
+        return height;
+    };
+    const float once = text_height(), spacing = ImGui::GetStyle().ItemSpacing.x;
+    window.set_text_scale(2);
+    EXPECT_EQ(text_height(), 2 * once);
+    EXPECT_EQ(ImGui::GetStyle().ItemSpacing.x, 2 * spacing);
+    window.set_text_scale(1);
+    EXPECT_EQ(text_height(), once);
+    EXPECT_FALSE(window.lost());
+}
+
+} // namespace
+} // namespace rapport
