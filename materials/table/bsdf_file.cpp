@@ -42,8 +42,9 @@ std::string colourway_prefix(size_t i) { return fmt::format("colourway_{}_", i);
 /// Turns the fields of one file into a table, or says what is wrong with which of them.
 class Reader {
   public:
-    explicit Reader(const std::filesystem::path& path)
-        : path_(path.string()), fields_(read_tensor_file(path)) {}
+    /// The fields are those of the file at `path`, there or yet to be written, and outlive this.
+    Reader(const std::filesystem::path& path, const TensorFile& fields)
+        : path_(path.string()), fields_(fields) {}
 
     BsdfTable read() {
         text("description");
@@ -287,7 +288,7 @@ class Reader {
     Scattering& scattering() { return table_; }
 
     std::string path_;
-    TensorFile fields_;
+    const TensorFile& fields_;
     BsdfTable table_;
 };
 
@@ -353,9 +354,13 @@ void write_table(const BsdfTable& table, const std::filesystem::path& path) {
         fields["colourways"] = json_text(names);
     }
     fields["paths"] = TensorField::of<uint64_t>({directions}, table.paths);
+    Reader(path, fields).read();
     write_tensor_file(fields, path);
 }
 
-BsdfTable read_table(const std::filesystem::path& path) { return Reader(path).read(); }
+BsdfTable read_table(const std::filesystem::path& path) {
+    const TensorFile fields = read_tensor_file(path);
+    return Reader(path, fields).read();
+}
 
 } // namespace rapport

@@ -99,7 +99,8 @@ BsdfTable make_full_table(const Bands& bands, bool front, bool back);
 BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> incident);
 
 /// Tensor-file container. Reading validates every field; a damaged file is a FileError, and no
-/// allocation is made before a size is checked against the file's.
+/// allocation is made before a size is checked against the file's. Writing validates the same
+/// first: a table that could not be read back leaves no file, and what was there stays.
 ///
 /// The arrays bear the names of the members above (`intensity`, `unscattered`, `absorbed`,
 /// `capped`, `lost`, `paths`, `accuracy`, `bin_error`, `realisation_error`, `grid_theta`,
@@ -110,8 +111,7 @@ BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> 
 /// Angles are in radians, as in the other tables of this container, so that they survive the round
 /// trip bit for bit. `grid_*` are absent from a partial table, `realisation_error` from one of a
 /// single realisation. Where there are colourways, `colourways` has their names (a JSON array), and
-/// the fields of the first are `colourway_0_intensity` and so on. Fields of other names are
-/// ignored.
+/// the fields of the first are `colourway_0_intensity` and so on. Other fields are ignored.
 void write_table(const BsdfTable& table, const std::filesystem::path& path);
 BsdfTable read_table(const std::filesystem::path& path);
 

@@ -24,12 +24,14 @@ template <MeasuredColours colours>
 void to_measured(const BsdfTable& table, const ExportOptions& options,
                  const std::filesystem::path& path) {
     const MeasuredLosses losses = export_measured(table, options.table, colours, path);
-    fmt::print("of the light of an even sky: kept {:.4f} (scattered back by the face); lost {:.4f} "
-               "scattered through, {:.4f} unscattered, and of light on the back {:.4f} scattered "
-               "back, {:.4f} through\n"
-               "resolution: RMS difference {:.4f} of the mean, albedo within {:.4f}\n",
-               losses.kept, losses.transmitted, losses.unscattered, losses.back_reflected,
-               losses.back_transmitted, losses.resolution, losses.largest_albedo_error);
+    fmt::print(
+        "of the light of an even sky: kept {:.4f} (scattered back by the face); lost {:.4f} "
+        "scattered through, {:.4f} unscattered, and of light on the back {:.4f} scattered "
+        "back, {:.4f} through\n"
+        "resolution: RMS difference {:.4f} of the mean, albedo within {:.4f}, in {:.1f} MB\n",
+        losses.kept, losses.transmitted, losses.unscattered, losses.back_reflected,
+        losses.back_transmitted, losses.resolution, losses.largest_albedo_error,
+        1e-6 * static_cast<double>(std::filesystem::file_size(path)));
 }
 
 void to_radiance(const BsdfTable& table, const ExportOptions& options,

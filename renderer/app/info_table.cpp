@@ -1,5 +1,6 @@
 #include "materials/table/bsdf_table.h"
 #include "materials/table/measured_fields.h"
+#include "materials/table/reciprocity.h"
 #include "renderer/app/info.h"
 
 #include <algorithm>
@@ -28,6 +29,20 @@ nlohmann::ordered_json error_json(const MeasurementError& error) {
         json["realisation"] = *error.realisation;
     json["discarded"] = error.discarded;
     return json;
+}
+
+void add_reciprocity(Info& info, const BsdfTable& table) {
+    info.json["reciprocity"] = nullptr;
+    const std::optional<ReciprocityGap> gap = reciprocity_gap(table);
+    if (!gap)
+        return;
+    info.json["reciprocity"] = {{"gap", gap->gap}, {"error", gap->error}, {"noise", gap->noise}};
+    info.text +=
+        fmt::format("reciprocity gap {:.4f} ± {:.4f} of the mean; noise alone makes {:.4f}",
+                    gap->gap, gap->error, gap->noise);
+    if (gap->noise > 0)
+        info.text += fmt::format(", {:.2f} times which it is", gap->gap / gap->noise);
+    info.text += '\n';
 }
 
 Info measured_info(const std::filesystem::path& path) {
@@ -140,6 +155,7 @@ Info table_info(const std::filesystem::path& path) {
                     table.bands.count(), fmt::join(table.bands.names, ", "),
                     table.largest_accuracy(), info.json["paths"].get<uint64_t>());
     info.text += error_text(table.largest_error()) + '\n';
+    add_reciprocity(info, table);
 
     info.json["incident"] = incident_json(table);
     info.text += incident_text(info.json["incident"]);

@@ -5,6 +5,7 @@
 #include "renderer/core/rng.h"
 #include "renderer/core/tensor_file.h"
 #include "renderer/core/text_hash.h"
+#include "tests/support/refusal.h"
 #include "tests/support/synthetic_tables.h"
 
 #include <cmath>
@@ -342,6 +343,33 @@ TEST_F(BsdfFile, MutatedFilesAreRefusedOrSound) {
         }
     }
     EXPECT_GT(refused, 100);
+}
+
+TEST_F(BsdfFile, ATableThatCouldNotBeReadIsNotWritten) {
+    const BsdfTable sound = with_colourways();
+    write_table(sound, path_);
+    const std::string before = bytes();
+    const auto place_of = [&](const std::function<void(BsdfTable&)>& change) {
+        BsdfTable table = sound;
+        change(table);
+        const FileError error = tests::refusal_of([&] { write_table(table, path_); });
+        EXPECT_EQ(error.path, path_.string());
+        return error.place;
+    };
+    EXPECT_EQ(place_of([](BsdfTable& t) { t.intensity[7] = std::nanf(""); }), "intensity[7]");
+    EXPECT_EQ(place_of([](BsdfTable& t) { t.absorbed[3] = -0.1f; }), "absorbed[3]");
+    EXPECT_EQ(place_of([](BsdfTable& t) { t.absorbed[3] += 0.1f; }), "intensity[1]");
+    EXPECT_EQ(place_of([](BsdfTable& t) { t.incident[2].theta = 2; }), "incident_theta[2]");
+    EXPECT_EQ(place_of([](BsdfTable& t) { std::swap(t.grid_theta[0], t.grid_theta[1]); }),
+              "grid_theta[1]");
+    EXPECT_EQ(place_of([](BsdfTable& t) {
+                  t.metadata = {{"cloth", "x"}, {"cloth_hash", "y"}};
+              }),
+              "metadata.cloth_hash");
+    EXPECT_EQ(place_of([](BsdfTable& t) { t.colourways["b"].capped[0] = HUGE_VALF; }),
+              "colourway_1_capped[0]");
+    EXPECT_EQ(bytes(), before);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 
 TEST_F(BsdfFile, MissingFileIsAFileError) {

@@ -131,6 +131,50 @@ TEST(Cloth, TurnsCounterClockwiseSeenFromTheFace) {
                 1e-4);
 }
 
+/// A streak that no mirror leaves as it is, on one side of the cloth more than on the other.
+double slanting(const IncidentDirection& from, const glm::dvec3& out, size_t) {
+    const glm::dvec3 sum = spherical_direction(from.theta, from.phi) + out;
+    return (out.z > 0 ? 0.1 : 0.05) * std::exp(-square(sum.x + 0.6 * sum.y));
+}
+
+TEST(Cloth, MirroredIsTheWeaveInAMirrorThenTurned) {
+    const auto table = std::make_shared<const TableBsdf>(
+        tests::small_synthetic_table(slanting, 0.05), "satin.bsdf");
+    const auto make_slanting = [&](const std::vector<Param>& list) {
+        return make_material(
+            "cloth", {make_params(list), "", [&](const auto&, const auto&) { return table; }});
+    };
+    const Param file = text("filename", "satin.bsdf");
+    const Param mirrored{.type = "bool", .name = "mirrored", .numbers = {1}, .strings = {}};
+    const auto plain = make_slanting({file}), mirror = make_slanting({file, mirrored});
+    const auto turned = make_slanting({file, mirrored, number("rotation", 30)});
+    const auto across_warp = [](const glm::vec3& w) { return glm::vec3(-w.x, w.y, w.z); };
+    for (const float side : {1.0f, -1.0f}) {
+        const glm::vec3 eye = side * direction(40, 10), light = direction(60, 200);
+        const glm::vec3 eye_there = across_warp(eye), light_there = across_warp(light);
+        EXPECT_NEAR(mirror->eval(eye, light).r, plain->eval(eye_there, light_there).r, 1e-6);
+        EXPECT_NEAR(mirror->pdf(eye, light), plain->pdf(eye_there, light_there), 1e-6);
+        EXPECT_NEAR(mirror->albedo(eye).r, plain->albedo(eye_there).r, 1e-6);
+        EXPECT_EQ(mirror->unscattered(eye), plain->unscattered(eye_there));
+        EXPECT_GT(std::abs(mirror->eval(eye, light).r / plain->eval(eye, light).r - 1), 0.05);
+
+        const auto a = mirror->sample(eye, 0.3f, {0.2f, 0.6f});
+        const auto b = plain->sample(eye_there, 0.3f, {0.2f, 0.6f});
+        ASSERT_TRUE(a && b);
+        EXPECT_LT(glm::distance(a->light, across_warp(b->light)), 1e-5);
+        EXPECT_NEAR(a->pdf, mirror->pdf(eye, a->light), 1e-3 * a->pdf);
+
+        const auto by_30 = [](const glm::vec3& w) {
+            const float c = std::cos(radians(30.0f)), s = std::sin(radians(30.0f));
+            return glm::vec3(c * w.x - s * w.y, c * w.y + s * w.x, w.z);
+        };
+        EXPECT_NEAR(turned->eval(by_30(eye), by_30(light)).r, mirror->eval(eye, light).r, 1e-5);
+        const auto c = turned->sample(by_30(eye), 0.3f, {0.2f, 0.6f});
+        ASSERT_TRUE(c);
+        EXPECT_LT(glm::distance(c->light, by_30(a->light)), 1e-4);
+    }
+}
+
 TEST(Cloth, ComesInColourways) {
     const auto own = make("cloth", {text("filename", "satin.bsdf")});
     const auto dyed = make("cloth", {text("filename", "satin.bsdf"), text("colourway", "black")});

@@ -1,6 +1,7 @@
 #include "materials/table/measured_brdf.h"
 #include "materials/table/measured_fields.h"
 #include "renderer/core/error.h"
+#include "renderer/core/rng.h"
 #include "renderer/core/tensor_file.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/measured_files.h"
@@ -165,6 +166,33 @@ TEST(MeasuredBrdf, IsTheFormulaOfTheFormat) {
         const MarginalWarp luminance(fields.luminance.values, 4, 4);
         const double density = luminance.pdf({{slice}, {1}}, s.position);
         EXPECT_NEAR(value.pdf, density * s.pdf / jacobian, 1e-3 * value.pdf);
+    }
+}
+
+TEST(MeasuredBrdf, TheDensityIsThatOfTheSamplesAtGrazingEyesToo) {
+    // The area on the sphere that a small square of random numbers is mapped to, times the density:
+    // but for kinks between nodes it is the area of the square.
+    const MeasuredBrdf brdf(tests::small_measured());
+    constexpr float kHalf = 0x1p-11f;
+    for (const float theta : {10.0f, 60.0f, 85.0f, 89.9f}) {
+        const glm::vec3 eye = spherical_direction(radians(theta), 0.7f);
+        CounterRng rng(1, Purpose::test, 0, 0);
+        std::vector<double> ratios;
+        for (int i = 0; i < 2000; ++i) {
+            const glm::vec2 u(0.01f + 0.98f * rng.uniform_float(),
+                              0.01f + 0.98f * rng.uniform_float());
+            const auto at = [&](float x, float y) {
+                return glm::dvec3(brdf.sample(eye, u + kHalf * glm::vec2(x, y)));
+            };
+            const double area =
+                glm::length(glm::cross(at(1, 0) - at(-1, 0), at(0, 1) - at(0, -1))) /
+                square(2.0 * kHalf);
+            ratios.push_back(area * brdf.eval_and_pdf(eye, brdf.sample(eye, u)).pdf);
+        }
+        std::ranges::sort(ratios);
+        EXPECT_NEAR(ratios[1000], 1, 1e-3) << theta;
+        EXPECT_NEAR(ratios[100], 1, 0.02) << theta;
+        EXPECT_NEAR(ratios[1900], 1, 0.02) << theta;
     }
 }
 
