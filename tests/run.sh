@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds the tests and runs them, the fast ones first; ends with ctest's own summary and status.
 #   bash tests/run.sh        the short counts
-#   bash tests/run.sh long   full counts, after the unit tests under the sanitizers and a minute of each fuzzer
+#   bash tests/run.sh long   full counts, after the unit tests under the sanitizers and on Debian 13, and a minute of
+#                            each fuzzer
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -24,6 +25,7 @@ if [[ ${1:-} == long ]]; then
     build "$preset"
     ctest --preset "$preset"
   done
+  bash tests/other_debian.sh trixie
   export RAPPORT_LONG=1
 fi
 build tests
