@@ -219,10 +219,11 @@ TEST(FibreView, ShowsTheClothThatIsWornFromWhereItIsTurnedTo) {
     EXPECT_FALSE(compare(turned, next()).agree);
 
     Cloth red = *document().cloth;
-    red.warp.fibre.color = {0.75, 0.05, 0.05};
-    red.weft.fibre.color = {0.75, 0.05, 0.05};
+    red.warp.fibre.color = {0.75, 0.1, 0.1};
+    red.weft.fibre.color = {0.75, 0.1, 0.1};
     session.edit_cloth(files.cloth(), red);
     tick_until(session, [&] { return !document().waiting; });
+    EXPECT_EQ(document().error, "");
     view.show(document().table->swatch, light, {48, 24});
     const Image dyed = next();
     EXPECT_GT(mean(dyed, "albedo.R"), 2 * mean(dyed, "albedo.G"));
