@@ -62,7 +62,7 @@ std::vector<Exchange> exchanges(const BsdfTable& table, size_t direction,
     const size_t bins = table.exits.bins(), bands = table.bands.count();
     const ExitBins exits = table.exits_of(direction);
     const IncidentDirection& incident = table.incident[direction];
-    const ExitChart<double> chart(spherical_direction(incident.theta, incident.phi));
+    const ExitChart chart(spherical_direction(incident.theta, incident.phi));
     std::vector<double> solid_angle(bins);
     std::vector<Rgb> means(2 * bins, Rgb(0)); // grey: over the bands
     double flux = 0, intensities = 0;

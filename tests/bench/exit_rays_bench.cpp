@@ -22,7 +22,7 @@ constexpr int kHeldOut = 6;
 
 std::vector<IncidentDirection> held_out() {
     std::vector<IncidentDirection> directions;
-    CounterRng rng(7, Purpose::test, 0, 0);
+    CounterRng rng(11, Purpose::test, 0, 0);
     for (int i = 0; i < kHeldOut; ++i) {
         const double cosine = std::lerp(std::cos(radians(80.0)), 1.0, rng.uniform());
         directions.push_back({Side::front, std::acos(cosine), 2 * kPi * rng.uniform()});
