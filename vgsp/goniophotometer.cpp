@@ -2,11 +2,10 @@
 
 #include "renderer/core/parallel.h"
 #include "vgsp/checkpoint_file.h"
-#include "vgsp/path_tally.h"
+#include "vgsp/path_forecast.h"
 
 #include <algorithm>
 #include <chrono>
-#include <numbers>
 #include <stdexcept>
 
 namespace rapport {
@@ -15,7 +14,7 @@ namespace {
 constexpr uint64_t kBatchPaths = 1024;
 constexpr uint64_t kPilotPaths = 1024; ///< per direction, and twice as many again while it pays, …
 constexpr uint64_t kMostPilotPaths = 32768; ///< … up to this
-constexpr double kPlannedSigmas = 3;
+constexpr double kPlannedSigmas = 4;
 constexpr uint64_t kMostPaths = uint64_t{1} << 40;
 constexpr uint64_t kFirstPilotPath = kMostPaths;   ///< the pilot's numbers come after all others
 constexpr size_t kWaitingBytes = size_t{64} << 20; ///< of deposits that wait to be summed
@@ -98,23 +97,22 @@ void Run::add_tasks(std::vector<Task>& tasks, size_t direction, uint64_t first,
             tasks.push_back({direction, group, k, std::min(kBatchPaths, until - k)});
 }
 
-/// Whether twice the pilot costs fewer paths than it takes off the plan: the margin for the pilot's
-/// uncertainty shrinks by √2.
-bool larger_pilot_pays(const PathTally& pilot, double accuracy) {
-    const double margin =
-        kPlannedSigmas * pilot.uncertainty() * pilot.error_of_one_path() / square(accuracy);
-    return static_cast<double>(pilot.paths()) < (1 - std::numbers::sqrt2 / 2) * margin;
+/// Whether twice the pilot costs fewer paths than it takes off the plan.
+bool larger_pilot_pays(const PathForecast& forecast, uint64_t paths, double accuracy) {
+    const double ideal = forecast.error_of_one_path / square(accuracy);
+    const double saved = ideal * (forecast.margin(ideal, kPlannedSigmas) -
+                                  forecast.margin(ideal, kPlannedSigmas, 2));
+    return static_cast<double>(paths) < saved;
 }
 
 /// How many paths reach `accuracy`, but for the risk of kPlannedSigmas.
-uint64_t paths_needed(const PathTally& pilot, double accuracy) {
-    const double needed =
-        pilot.error_of_one_path() * (1 + kPlannedSigmas * pilot.uncertainty()) / square(accuracy);
+uint64_t paths_needed(const PathForecast& forecast, double accuracy) {
+    const double needed = std::ceil(forecast.paths_needed(accuracy, kPlannedSigmas));
     // Where nothing scatters there is no error to plan by (it is not a number), and paths are
     // short: as many as the pilot had tell what goes straight through.
     if (std::isnan(needed))
         return kMostPilotPaths;
-    return needed < kMostPaths ? static_cast<uint64_t>(std::ceil(needed)) : kMostPaths;
+    return needed < kMostPaths ? static_cast<uint64_t>(needed) : kMostPaths;
 }
 
 std::vector<uint64_t> Run::plan() const {
@@ -123,24 +121,31 @@ std::vector<uint64_t> Run::plan() const {
     if (most <= kPilotPaths)
         return planned;
     std::vector<PathTally> pilots = empty_tallies();
+    std::vector<std::vector<PathForecast>> forecasts(planned.size()); // of each set of dyes
     std::vector<Task> tasks;
     do {
         tasks.clear();
         for (size_t d = 0; d < planned.size(); ++d) {
             const uint64_t done = paths(pilots, d), until = std::max(kPilotPaths, 2 * done);
-            const auto pays = [&](const PathTally& pilot) {
-                return larger_pilot_pays(pilot, settings_.accuracy);
+            const auto pays = [&](const PathForecast& forecast) {
+                return larger_pilot_pays(forecast, done, settings_.accuracy);
             };
             if (done == 0 || (until <= std::min(kMostPilotPaths, most) &&
-                              std::ranges::any_of(of_direction(pilots, d), pays)))
+                              std::ranges::any_of(forecasts[d], pays)))
                 add_tasks(tasks, d, kFirstPilotPath + done, kFirstPilotPath + until);
         }
         trace(tasks, pilots);
+        for (size_t d = 0; d < planned.size(); ++d) {
+            forecasts[d].clear();
+            const std::vector<uint8_t> regions = PathForecast::regions(table_, d);
+            for (const PathTally& pilot : of_direction(pilots, d))
+                forecasts[d].emplace_back(pilot, regions);
+        }
     } while (!tasks.empty());
     for (size_t d = 0; d < planned.size(); ++d) {
         planned[d] = kBatchPaths;
-        for (const PathTally& pilot : of_direction(pilots, d))
-            planned[d] = std::max(planned[d], paths_needed(pilot, settings_.accuracy));
+        for (const PathForecast& forecast : forecasts[d])
+            planned[d] = std::max(planned[d], paths_needed(forecast, settings_.accuracy));
         planned[d] = std::min(most, planned[d]);
     }
     return planned;

@@ -51,11 +51,11 @@ struct GoniophotometerCounts {
 /// tells is the largest.
 ///
 /// How many paths a direction gets is fixed before they are traced, by a pilot whose own paths are
-/// thrown away: to stop when the estimate looks good would make it look better than it is. The
-/// pilot's three-sigma bound on its variance is what is planned for, so that ε seldom ends above
-/// what was asked; where it does, it is reported as it is. Only `max_seconds` makes the result
-/// depend on the machine; the first increment (at least one batch of each direction) is made even
-/// if the time is up.
+/// thrown away: to stop when the estimate looks good would make it look better than it is. Planned
+/// for are four standard deviations of what the pilot leaves open and of what the run itself will
+/// claim (path_forecast.h), so that ε seldom ends above what was asked; where it does, it is
+/// reported as it is. Only `max_seconds` makes the result depend on the machine; the first
+/// increment (at least one batch of each direction) is made even if the time is up.
 ///
 /// The pilot is the checkpoint's first increment. A checkpoint knows the run that it belongs to by
 /// `table.metadata`, which must tell all that decides the result, and the incident directions:

@@ -130,32 +130,38 @@ ClothOptics cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
     return optics;
 }
 
+Realisations build_realisations(const Cloth& cloth, const MicroElementOptions& geometry,
+                                int count) {
+    if (count < 1)
+        throw std::invalid_argument("no realisation of the cloth");
+    Realisations result{build_micro_element(cloth, geometry), {}};
+    while (count > 1 && count * result.first.memory > kMostMemory)
+        --count;
+    result.tracers.emplace_back(result.first.fibres);
+    for (int i = 1; i < count; ++i) {
+        MicroElementOptions other = geometry;
+        other.seed = realisation_seed(geometry.seed, i);
+        result.tracers.emplace_back(build_micro_element(cloth, other).fibres);
+    }
+    return result;
+}
+
 ClothMeasurement
 measure_cloth(const Cloth& cloth, const MeasureOptions& options,
               const std::function<void(const GoniophotometerProgress&)>& progress) {
-    if (options.realisations < 1)
-        throw std::invalid_argument("no realisation of the cloth");
     const GoniophotometerSettings& settings = options.goniophotometer;
     const MicroElementOptions geometry{.seed = settings.seed, .stopped = settings.stopped};
+    Realisations realisations = build_realisations(cloth, geometry, options.realisations);
     ClothMeasurement result{options.incidence.empty()
                                 ? make_full_table(cloth.bands, options.front, options.back)
                                 : make_partial_table(cloth.bands, options.incidence),
-                            build_micro_element(cloth, geometry),
-                            options.realisations,
+                            std::move(realisations.first),
+                            static_cast<int>(realisations.tracers.size()),
                             {}};
-    while (result.realisations > 1 && result.realisations * result.element.memory > kMostMemory)
-        --result.realisations;
-    std::vector<kernel::FibreTracer> realisations;
-    realisations.emplace_back(result.element.fibres);
-    for (int i = 1; i < result.realisations; ++i) {
-        MicroElementOptions other = geometry;
-        other.seed = realisation_seed(settings.seed, i);
-        realisations.emplace_back(build_micro_element(cloth, other).fibres);
-    }
-    const ClothOptics optics = cloth_optics(cloth, realisations[0], settings);
+    const ClothOptics optics = cloth_optics(cloth, realisations.tracers[0], settings);
     result.table.metadata =
         metadata(cloth, result.element, geometry, optics, result.realisations, settings);
-    result.counts = measure(realisations, optics.fibres, settings, result.table, progress,
+    result.counts = measure(realisations.tracers, optics.fibres, settings, result.table, progress,
                             options.checkpoint, optics.colourways);
     return result;
 }

@@ -9,15 +9,24 @@
 
 namespace rapport {
 
+/// Micro-elements of one cloth with random numbers of their own, ready for tracing.
+struct Realisations {
+    MicroElement first;
+    std::vector<kernel::FibreTracer> tracers;
+};
+
+/// At most `count` ≥ 1, fewer where kMostMemory does not hold as many. The first has the seed
+/// given. FileError (at the cloth's path) for a cloth that cannot exist.
+Realisations build_realisations(const Cloth& cloth, const MicroElementOptions& geometry, int count);
+
 struct MeasureOptions {
     GoniophotometerSettings goniophotometer;
     /// (side, θ, φ) in radians; empty = the whole grid of the sides asked for.
     std::vector<IncidentDirection> incidence;
     bool front = true, back = true;
-    /// Micro-elements with random numbers of their own that are averaged, at least 1; fewer where
-    /// kMostMemory does not hold as many. How many of
-    /// them stand for a cloth is a matter of the measurement, like its accuracy, and none of the
-    /// cloth, whose file tells what they have in common.
+    /// To be averaged (build_realisations). How many of them stand for a cloth is a matter of the
+    /// measurement, like its accuracy, and none of the cloth, whose file tells what they have in
+    /// common.
     int realisations = 1;
     Checkpoint checkpoint{};
 };

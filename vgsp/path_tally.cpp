@@ -17,6 +17,25 @@ GoniophotometerCounts& operator+=(GoniophotometerCounts& a, const Goniophotomete
     return a;
 }
 
+double variance_between(std::span<const double> sums, double squares,
+                        std::span<const double> paths) {
+    const double r = static_cast<double>(sums.size());
+    double mean = 0, mean2 = 0, explained = 0, inverse_paths = 0, n = 0;
+    for (size_t i = 0; i < sums.size(); ++i) {
+        const double of_one = sums[i] / paths[i];
+        mean += of_one / r;
+        mean2 += square(of_one);
+        explained += paths[i] * square(of_one);
+        inverse_paths += 1 / paths[i] / r;
+        n += paths[i];
+    }
+    // One-way analysis of variance: between the realisations' means, less what the paths within a
+    // realisation scatter them by.
+    const double between = (mean2 - r * square(mean)) / (r - 1);
+    const double within = (squares - explained) / (n - r);
+    return between - within * inverse_paths;
+}
+
 PathTally::PathTally(const BsdfTable& table, size_t direction, size_t realisations, size_t groups)
     : bands_(table.bands.count()), groups_(groups), realisation_paths_(realisations) {
     const size_t bins = table.exits.bins();
@@ -26,6 +45,7 @@ PathTally::PathTally(const BsdfTable& table, size_t direction, size_t realisatio
         solid_angle_[bin] = exits.solid_angle(bin % bins);
     sum_.assign(2 * bins * bands_, 0.0);
     sum_mean2_.assign(2 * bins, 0.0);
+    sum_mean4_.assign(2 * bins, 0.0);
     quarter_.assign(2 * bins * 4, 0.0);
     if (realisations > 1)
         realisation_.assign(2 * bins * realisations, 0.0);
@@ -53,7 +73,7 @@ void PathTally::add(const PathBatch& batch, size_t dyes) {
             mean /= static_cast<double>(bands_);
             const double mean2 = square(mean);
             sum_mean2_[bin] += mean2;
-            sum_density2_[0] += square(mean2 / solid_angle_[bin]);
+            sum_mean4_[bin] += square(mean2);
             quarter_[*quarter] += mean;
             if (realisations > 1)
                 realisation_[bin * realisations + realisation] += mean;
@@ -70,6 +90,11 @@ void PathTally::add(const PathBatch& batch, size_t dyes) {
 double PathTally::total() const {
     const double sum = std::accumulate(sum_.begin(), sum_.end(), 0.0);
     return sum / static_cast<double>(bands_ * paths());
+}
+
+double PathTally::mean(size_t bin) const {
+    const double* sums = &sum_[bin * bands_];
+    return std::accumulate(sums, sums + bands_, 0.0) / static_cast<double>(bands_ * paths());
 }
 
 double PathTally::scale() const {
@@ -94,30 +119,6 @@ double PathTally::error_of_one_path() const {
         variance += (sum_mean2_[bin] / n - squared_means) * n / (n - 1) / solid_angle_[bin];
     }
     return scale() * std::max(variance, 0.0);
-}
-
-double PathTally::uncertainty() const {
-    const double n = static_cast<double>(paths());
-    const double total = this->total();
-    if (!(total > 0))
-        return std::numeric_limits<double>::infinity();
-    // By the delta method. The number is (D − M)/total² with D = Σ_b E[w²]_b/Ω_b, a mean over the
-    // paths, and M = Σ_b E[w]_b²/Ω_b, whose influence per path is 2·w·E[w]_b/Ω_b; the three are
-    // taken as independent.
-    double density = 0, peaks = 0, peaks2 = 0, mean2 = 0;
-    for (size_t bin = 0; bin < solid_angle_.size(); ++bin) {
-        const double* sums = &sum_[bin * bands_];
-        const double mean = std::accumulate(sums, sums + bands_, 0.0) / (bands_ * n);
-        const double square_mean = sum_mean2_[bin] / n;
-        density += square_mean / solid_angle_[bin];
-        peaks += mean * mean / solid_angle_[bin];
-        peaks2 += square_mean * square(mean / solid_angle_[bin]);
-        mean2 += square_mean;
-    }
-    const double of_density = std::max(sum_density2_[0] / n - square(density), 0.0);
-    const double of_peaks = 4 * std::max(peaks2 - square(peaks), 0.0);
-    const double of_total = 4 * std::max(mean2 / square(total) - 1, 0.0);
-    return std::sqrt(((of_density + of_peaks) / square(density - peaks) + of_total) / n);
 }
 
 double PathTally::accuracy() const {
@@ -150,24 +151,15 @@ double PathTally::realisation_error() const {
         return std::numeric_limits<double>::quiet_NaN();
     if (n < 2 * r)
         return 0;
+    std::vector<double> paths_of(realisations);
+    for (size_t i = 0; i < realisations; ++i)
+        paths_of[i] = static_cast<double>(realisation_paths_[i]) / static_cast<double>(groups_);
     double spread = 0;
-    for (size_t bin = 0; bin < solid_angle_.size(); ++bin) {
-        const double* sums = &realisation_[bin * realisations];
-        double mean = 0, squares = 0, explained = 0, inverse_paths = 0;
-        for (size_t i = 0; i < realisations; ++i) {
-            const double paths = static_cast<double>(realisation_paths_[i]) / groups_;
-            const double of_one = sums[i] / paths;
-            mean += of_one / r;
-            squares += square(of_one);
-            explained += paths * square(of_one);
-            inverse_paths += 1 / paths / r;
-        }
-        // One-way analysis of variance: between the realisations' means, less what the paths
-        // within a realisation scatter them by.
-        const double between = (squares - r * square(mean)) / (r - 1);
-        const double within = (sum_mean2_[bin] - explained) / (n - r);
-        spread += (between - within * inverse_paths) / solid_angle_[bin];
-    }
+    for (size_t bin = 0; bin < solid_angle_.size(); ++bin)
+        spread +=
+            variance_between(std::span(realisation_).subspan(bin * realisations, realisations),
+                             sum_mean2_[bin], paths_of) /
+            solid_angle_[bin];
     return std::sqrt(scale() * std::max(spread, 0.0) / r);
 }
 
@@ -206,8 +198,8 @@ template <class... Lists> auto lists_of(Lists&... lists) { return std::array{std
 
 std::vector<double> PathTally::sums() const {
     std::vector<double> all;
-    for (const auto list : lists_of(sum_, sum_mean2_, quarter_, realisation_, unscattered_, capped_,
-                                    lost_, sum_density2_))
+    for (const auto list : lists_of(sum_, sum_mean2_, sum_mean4_, quarter_, realisation_,
+                                    unscattered_, capped_, lost_))
         all.insert(all.end(), list.begin(), list.end());
     return all;
 }
@@ -222,8 +214,8 @@ std::vector<uint64_t> PathTally::path_counts() const {
 void PathTally::restore(std::span<const double> sums, std::span<const uint64_t> path_counts) {
     if (sums.size() != this->sums().size() || path_counts.size() != this->path_counts().size())
         throw std::invalid_argument("a tally's sums are of another run");
-    for (const auto list : lists_of(sum_, sum_mean2_, quarter_, realisation_, unscattered_, capped_,
-                                    lost_, sum_density2_)) {
+    for (const auto list : lists_of(sum_, sum_mean2_, sum_mean4_, quarter_, realisation_,
+                                    unscattered_, capped_, lost_)) {
         std::copy_n(sums.begin(), list.size(), list.begin());
         sums = sums.subspan(list.size());
     }

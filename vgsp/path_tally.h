@@ -49,8 +49,6 @@ class PathTally {
     /// weight in the mean over the bands. Unbiased per bin, empty bins included. 0 if nothing
     /// scatters.
     double error_of_one_path() const;
-    /// One standard error of that number, relative to it; infinite if nothing has scattered.
-    double uncertainty() const;
     double accuracy() const; ///< ε of the mean over these paths; 0 if nothing scatters
     /// MeasurementError::bins: each bin's mean against those of its four quarters. What noise adds
     /// to the sum of squares is subtracted without bias; where it leaves less than nothing, 0.
@@ -68,8 +66,15 @@ class PathTally {
     /// Throws std::invalid_argument for lists of another length.
     void restore(std::span<const double> sums, std::span<const uint64_t> path_counts);
 
+    /// Sums over the paths by bin of both blocks, for a forecast (path_forecast.h): of the squares
+    /// and of the fourth powers of a weight's mean over the bands.
+    std::span<const double> squares() const { return sum_mean2_; }
+    std::span<const double> fourth_powers() const { return sum_mean4_; }
+    std::span<const double> solid_angles() const { return solid_angle_; } ///< [sr]
+    double total() const;                                                 ///< E[w]
+    double mean(size_t bin) const;                                        ///< E[w]_b
+
   private:
-    double total() const; ///< E[w]
     /// 4π/E[w]², or 0 where nothing scatters: makes Σ_b (ΔΦ_b)²/Ω_b of fluxes the squared error.
     double scale() const;
 
@@ -77,13 +82,19 @@ class PathTally {
     size_t bands_, groups_;
     std::vector<double> sum_;         ///< [bin, band], of weights
     std::vector<double> sum_mean2_;   ///< [bin], of squared band means of the weight
+    std::vector<double> sum_mean4_;   ///< [bin], of their fourth powers
     std::vector<double> quarter_;     ///< [bin, 4], of band means
     std::vector<double> realisation_; ///< [bin, realisation], of band means; empty for one
     std::vector<double> unscattered_, capped_, lost_;
-    std::vector<double> sum_density2_{0.0};   ///< Σ (w²/Ω)², for the uncertainty
     std::vector<uint64_t> realisation_paths_; ///< in all groups
     GoniophotometerCounts counts_;
 };
+
+/// The variance between the means of R ≥ 2 realisations of one number, without bias, so that it may
+/// be below 0: from each one's sum over its paths, the sum of all squares, and each one's paths, of
+/// which there are more than R.
+double variance_between(std::span<const double> sums, double squares,
+                        std::span<const double> paths);
 
 /// Sums of what happened to the paths.
 GoniophotometerCounts& operator+=(GoniophotometerCounts& a, const GoniophotometerCounts& b);

@@ -1,7 +1,7 @@
 #include "vgsp/plane_scan.h"
 
 #include "renderer/core/parallel.h"
-#include "vgsp/incident_path.h"
+#include "vgsp/path_tally.h"
 
 #include <algorithm>
 #include <chrono>
@@ -24,12 +24,12 @@ constexpr uint64_t kFirstPilotPath = kMostPaths; ///< the pilot's numbers come a
 
 /// Sums over the paths that the detector sees.
 struct Tally {
-    Tally(size_t bands, size_t groups)
+    Tally(size_t bands, size_t groups, size_t realisations)
         : bands(bands), groups(groups), sum(kBins * bands), sum2(kBins * bands), mean(kBins),
-          mean2(kBins) {}
+          mean2(kBins), realisation(kBins * realisations), realisation_paths(realisations) {}
 
     /// `weights` are those of the bands of a group.
-    void deposit(size_t bin, size_t group, std::span<const double> weights) {
+    void deposit(size_t bin, size_t group, size_t from, std::span<const double> weights) {
         const size_t first = bin * bands + group * weights.size();
         double total = 0;
         for (size_t band = 0; band < weights.size(); ++band) {
@@ -40,6 +40,7 @@ struct Tally {
         const double average = total / static_cast<double>(bands);
         mean[bin] += average;
         mean2[bin] += square(average);
+        realisation[bin * realisation_paths.size() + from] += average;
     }
     Tally& operator+=(const Tally& other) {
         const auto add = [](std::vector<double>& to, const std::vector<double>& from) {
@@ -49,6 +50,8 @@ struct Tally {
         add(sum2, other.sum2);
         add(mean, other.mean);
         add(mean2, other.mean2);
+        add(realisation, other.realisation);
+        add(realisation_paths, other.realisation_paths);
         paths += other.paths;
         return *this;
     }
@@ -79,12 +82,29 @@ struct Tally {
         const double total = std::accumulate(mean.begin(), mean.end(), 0.0);
         return total > 0 ? square(total) / std::accumulate(mean2.begin(), mean2.end(), 0.0) : 0;
     }
+    /// As PathTally::realisation_error(), of windows of equal solid angles.
+    std::optional<double> realisation_error() const {
+        const size_t r = realisation_paths.size();
+        if (r < 2)
+            return std::nullopt;
+        const double total = std::accumulate(mean.begin(), mean.end(), 0.0);
+        if (paths < 2 * r || total == 0)
+            return 0;
+        double spread = 0;
+        for (size_t bin = 0; bin < kBins; ++bin)
+            spread += variance_between(std::span(realisation).subspan(bin * r, r), mean2[bin],
+                                       realisation_paths);
+        return std::sqrt(kBins * std::max(spread, 0.0) / static_cast<double>(r)) *
+               static_cast<double>(paths) / total;
+    }
     double accuracy() const { return std::sqrt(error_of_one_path() / static_cast<double>(paths)); }
 
-    size_t bands, groups;            ///< of bands that share paths
-    std::vector<double> sum, sum2;   ///< [bin, band], of weights and their squares
-    std::vector<double> mean, mean2; ///< [bin], of the weights' means over the bands
-    uint64_t paths = 0;              ///< in each group
+    size_t bands, groups;                  ///< of bands that share paths
+    std::vector<double> sum, sum2;         ///< [bin, band], of weights and their squares
+    std::vector<double> mean, mean2;       ///< [bin], of the weights' means over the bands
+    std::vector<double> realisation;       ///< [bin, realisation], of the same means
+    std::vector<double> realisation_paths; ///< in each group
+    uint64_t paths = 0;                    ///< of all realisations, in each group
 };
 
 /// The bin that sees light travelling along `direction`, if any does.
@@ -104,12 +124,14 @@ std::optional<size_t> seen_in(const glm::dvec3& direction, const IncidentDirecti
 /// Traces one direction's paths.
 class Detector {
   public:
-    /// A tracer for each group of bands that share paths.
-    Detector(std::span<const IncidentPathTracer> groups, const IncidentDirection& incident,
-             size_t number, uint64_t seed)
-        : groups_(groups), incident_(incident), number_(number), seed_(seed) {}
+    Detector(const PathTracers& tracers, const IncidentDirection& incident, size_t number,
+             uint64_t seed)
+        : tracers_(tracers), incident_(incident), number_(number), seed_(seed) {}
 
-    Tally empty_tally() const { return {groups_.size() * groups_[0].channels, groups_.size()}; }
+    Tally empty_tally() const {
+        return {tracers_.groups * tracers_.tracers[0].channels, tracers_.groups,
+                tracers_.realisations};
+    }
 
     void trace(uint64_t first, uint64_t count, Tally& tally) const {
         std::vector<Tally> batches((count + kBatchPaths - 1) / kBatchPaths, empty_tally());
@@ -141,28 +163,36 @@ class Detector {
 
   private:
     void trace_batch(uint64_t first, uint64_t end, Tally& tally) const {
-        for (size_t group = 0; group < groups_.size(); ++group)
-            trace_group(group, first, end, tally);
         tally.paths = end - first;
+        uint64_t from = first;
+        for (size_t realisation = 0; realisation < tracers_.realisations; ++realisation) {
+            const uint64_t to = first + tally.paths * (realisation + 1) / tracers_.realisations;
+            for (size_t group = 0; group < tracers_.groups; ++group)
+                trace_group(group, realisation, from, to, tally);
+            tally.realisation_paths[realisation] = static_cast<double>(to - from);
+            from = to;
+        }
     }
 
-    void trace_group(size_t group, uint64_t first, uint64_t end, Tally& tally) const {
+    void trace_group(size_t group, size_t realisation, uint64_t first, uint64_t end,
+                     Tally& tally) const {
+        const IncidentPathTracer& tracer = tracers_.at(group, realisation);
         IncidentPath path;
-        std::vector<double> weights(groups_[group].channels);
+        std::vector<double> weights(tracer.channels);
         for (uint64_t k = first; k < end; ++k) {
-            CounterRng rng(seed_, Purpose::incident_path, number_ * groups_.size() + group, k);
-            groups_[group].trace(incident_, rng, path);
+            CounterRng rng(seed_, Purpose::incident_path, number_ * tracers_.groups + group, k);
+            tracer.trace(incident_, rng, path);
             if (path.fate != PathFate::scattered)
                 continue;
             if (const std::optional<size_t> bin = seen_in(path.light.direction, incident_)) {
                 for (size_t band = 0; band < weights.size(); ++band)
                     weights[band] = path.weight(band);
-                tally.deposit(*bin, group, weights);
+                tally.deposit(*bin, group, realisation, weights);
             }
         }
     }
 
-    std::span<const IncidentPathTracer> groups_;
+    const PathTracers& tracers_;
     const IncidentDirection& incident_;
     size_t number_;
     uint64_t seed_;
@@ -193,6 +223,7 @@ PlaneScan result_of(const Tally& tally, const IncidentDirection& incident, const
             intensity(tally.mean),
             mean_error,
             tally.accuracy(),
+            tally.realisation_error(),
             tally.paths};
 }
 
@@ -201,7 +232,7 @@ PlaneScan result_of(const Tally& tally, const IncidentDirection& incident, const
 double PlaneScan::solid_angle() { return kStep * 2 * std::sin(kHalfWidth); }
 
 std::vector<PlaneScan>
-scan_planes(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
+scan_planes(std::span<const kernel::FibreTracer> realisations, std::span<const FibreOptics> optics,
             const Bands& bands, std::span<const IncidentDirection> incident,
             const GoniophotometerSettings& settings,
             const std::function<void(const GoniophotometerProgress&)>& progress) {
@@ -209,12 +240,15 @@ scan_planes(const kernel::FibreTracer& tracer, std::span<const FibreOptics> opti
         throw std::invalid_argument("the accuracy asked for is not positive");
     if (settings.max_events < 1)
         throw std::invalid_argument("a path is allowed no events");
-    const std::vector<std::vector<FibreMedium>> media =
-        media_of_groups(optics, bands.count(), tracer);
-    std::vector<IncidentPathTracer> groups;
-    for (const std::vector<FibreMedium>& of_group : media)
-        groups.push_back(
-            {tracer, of_group, bands.count() / media.size(), settings.max_events, true});
+    if (realisations.empty() || realisations.size() > kBatchPaths)
+        throw std::invalid_argument("no realisation of the cloth, or too many");
+    const std::vector<std::vector<FibreMedium>> groups =
+        media_of_groups(optics, bands.count(), realisations[0]);
+    PathTracers tracers{realisations.size(), groups.size(), {}};
+    for (const std::vector<FibreMedium>& media : groups)
+        for (const kernel::FibreTracer& tracer : realisations)
+            tracers.tracers.push_back(
+                {tracer, media, bands.count() / groups.size(), settings.max_events, true});
 
     const auto start = std::chrono::steady_clock::now();
     const auto seconds = [&] {
@@ -224,7 +258,7 @@ scan_planes(const kernel::FibreTracer& tracer, std::span<const FibreOptics> opti
     std::vector<PlaneScan> scans;
     double worst = 0, traced = 0;
     for (size_t d = 0; d < incident.size(); ++d) {
-        const Detector detector(groups, incident[d], d, settings.seed);
+        const Detector detector(tracers, incident[d], d, settings.seed);
         const uint64_t planned = detector.plan(settings);
         const double until = settings.max_seconds * (static_cast<double>(d) + 1) / directions;
         Tally tally = detector.empty_tally();

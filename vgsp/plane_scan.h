@@ -2,6 +2,8 @@
 
 #include "vgsp/goniophotometer.h"
 
+#include <optional>
+
 namespace rapport {
 
 /// What a detector sees that is moved through the plane of incidence, once round the cloth.
@@ -28,16 +30,19 @@ struct PlaneScan {
     std::vector<double> intensity, error, mean_intensity, mean_error;
     /// ε: the RMS of mean_error over the mean of mean_intensity. 0 if nothing was seen.
     double accuracy = 0;
+    /// MeasurementError::realisation, on the same angles; none for a single realisation.
+    std::optional<double> realisation_error;
     uint64_t paths = 0;
 };
 
-/// Scans the planes of the given directions of incidence. Path k of direction d depends on (seed,
-/// d, k) alone, and, as in measure(), a pilot that is thrown away decides how many paths bring ε to
-/// `settings.accuracy`. `max_seconds` is shared out evenly over the directions.
+/// Scans the planes of the given directions of incidence; realisations share each one's paths
+/// equally. Path k of direction d depends on (seed, d, k) alone, and, as in measure(), a pilot that
+/// is thrown away decides how many paths bring ε to `settings.accuracy`. `max_seconds` is shared
+/// out evenly over the directions.
 ///
 /// Throws std::invalid_argument for optics or settings outside their domain.
 std::vector<PlaneScan>
-scan_planes(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
+scan_planes(std::span<const kernel::FibreTracer> realisations, std::span<const FibreOptics> optics,
             const Bands& bands, std::span<const IncidentDirection> incident,
             const GoniophotometerSettings& settings,
             const std::function<void(const GoniophotometerProgress&)>& progress = {});

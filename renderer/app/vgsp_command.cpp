@@ -71,6 +71,14 @@ std::vector<IncidentDirection> scan_incidence(const VgspOptions& options) {
     return incident;
 }
 
+void warn_of_fewer(size_t realisations, const MicroElement& element, const VgspOptions& options,
+                   bool quiet) {
+    if (!quiet && realisations < static_cast<size_t>(options.realisations))
+        fmt::print(stderr, "{}: {} of {} realisations: each takes {:.2g} GB, all may take {:.2g}\n",
+                   options.cloth, realisations, options.realisations, element.memory * 1e-9,
+                   kMostMemory * 1e-9);
+}
+
 /// OUT.csv and OUT.svg, whichever of the two `output` names.
 void scan(const Cloth& cloth, const std::filesystem::path& output, const VgspOptions& options,
           const GoniophotometerSettings& settings,
@@ -78,22 +86,27 @@ void scan(const Cloth& cloth, const std::filesystem::path& output, const VgspOpt
     const std::string extension = lower_extension(output);
     if (extension != ".csv" && extension != ".svg")
         throw FileError("command line", "--output", "a .csv or .svg for a scan", output.string());
-    const MicroElement element = build_micro_element(cloth, {.seed = settings.seed});
-    const kernel::FibreTracer tracer(element.fibres);
-    const std::vector<PlaneScan> scans =
-        scan_planes(tracer, cloth_optics(cloth, tracer, settings).fibres, cloth.bands,
-                    scan_incidence(options), settings, watch);
-    double accuracy = 0;
-    for (const PlaneScan& each : scans)
+    const Realisations realisations =
+        build_realisations(cloth, {.seed = settings.seed}, options.realisations);
+    warn_of_fewer(realisations.tracers.size(), realisations.first, options, quiet);
+    const std::vector<PlaneScan> scans = scan_planes(
+        realisations.tracers, cloth_optics(cloth, realisations.tracers[0], settings).fibres,
+        cloth.bands, scan_incidence(options), settings, watch);
+    double accuracy = 0, spread = 0;
+    for (const PlaneScan& each : scans) {
         accuracy = std::max(accuracy, each.accuracy);
+        spread = std::max(spread, each.realisation_error.value_or(0));
+    }
     for (const auto& [name, text] :
          {std::pair(".csv", scan_csv(scans)), {".svg", scan_svg(scans)}}) {
         std::filesystem::path path = output;
         path.replace_extension(name);
         write_stream_atomically(path, [&](std::ofstream& stream) { stream << text; });
         if (!quiet)
-            fmt::print("{}: accuracy {:.4f} on {} angles of exit, {} incident directions\n",
-                       path.string(), accuracy, 2 * PlaneScan::kAngles, scans.size());
+            fmt::print("{}: accuracy {:.4f} on {} angles of exit, {} incident directions{}\n",
+                       path.string(), accuracy, 2 * PlaneScan::kAngles, scans.size(),
+                       realisations.tracers.size() > 1 ? fmt::format(", realisation {:.4f}", spread)
+                                                       : "");
     }
 }
 
@@ -123,6 +136,13 @@ void run(const VgspOptions& options, const CommonOptions& common) {
     const auto watch = [&](const GoniophotometerProgress& progress) {
         line.update(path, progress);
     };
+    // A scan is of single directions, each ready after minutes: to ask for fewer at a time keeps
+    // what is done as well as a checkpoint would.
+    if (scanning && options.resume)
+        throw FileError("command line", "--resume",
+                        "a table: a scan keeps no checkpoint, ask for fewer --plane and --theta-in "
+                        "at a time",
+                        "a scan");
     if (scanning)
         return scan(cloth, output, options, measure.goniophotometer, watch, common.quiet);
     measure.checkpoint = {output, options.resume};
@@ -136,10 +156,7 @@ void run(const VgspOptions& options, const CommonOptions& common) {
     std::filesystem::remove(measure.checkpoint.path);
     if (common.quiet)
         return;
-    if (result.realisations < measure.realisations)
-        fmt::print(stderr, "{}: {} of {} realisations: each takes {:.2g} GB, all may take {:.2g}\n",
-                   path.string(), result.realisations, measure.realisations,
-                   result.element.memory * 1e-9, kMostMemory * 1e-9);
+    warn_of_fewer(result.realisations, result.element, options, common.quiet);
     const BsdfTable& table = result.table;
     fmt::print("{}: accuracy {:.4f} on {} bins, {} incident directions, {} paths\n{}\n",
                output.string(), table.largest_accuracy(), 2 * table.exits.bins(),
@@ -187,16 +204,13 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
     command
         ->add_option("--realisations", options->realisations,
                      "Realisations of the cloth's random fibres that are averaged (default 4)")
-        ->check(CLI::Range(1, 1024))
-        ->excludes(plane);
+        ->check(CLI::Range(1, 1024));
     command->add_option("--max-rays", options->settings.max_paths,
                         "Incident paths per direction at most");
     command->add_option("--max-time", options->settings.max_seconds, "Seconds at most")
         ->check(CLI::PositiveNumber);
-    command
-        ->add_flag("--resume", options->resume,
-                   "Go on with a measurement that was interrupted, from OUTPUT.part")
-        ->excludes(plane);
+    command->add_flag("--resume", options->resume,
+                      "Go on with a measurement that was interrupted, from OUTPUT.part (no scan)");
     command->callback([options, &common] { run(*options, common); });
 }
 

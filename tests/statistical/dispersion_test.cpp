@@ -113,14 +113,14 @@ TEST(Dispersion, IsSeenInAScanToo) {
     const GoniophotometerSettings settings{.accuracy = 1e-6, .max_paths = 200'000};
     const std::vector incident{kIncident};
     const PlaneScan together =
-        scan_planes(stack(), std::vector<FibreOptics>{{kIndices, kAbsorption, 0}}, Bands{},
+        scan_planes({&stack(), 1}, std::vector<FibreOptics>{{kIndices, kAbsorption, 0}}, Bands{},
                     incident, settings)[0];
     EXPECT_EQ(together.paths, 200'000u);
     for (size_t band = 0; band < 3; ++band) {
         const auto excess = [&](double index) {
-            const PlaneScan alone =
-                scan_planes(stack(), std::vector<FibreOptics>{{index, {kAbsorption[band]}, 0}},
-                            Bands::from_edges({400, 700}), incident, settings)[0];
+            const PlaneScan alone = scan_planes(
+                {&stack(), 1}, std::vector<FibreOptics>{{index, {kAbsorption[band]}, 0}},
+                Bands::from_edges({400, 700}), incident, settings)[0];
             double chi2 = 0;
             int degrees = 0;
             for (size_t bin = 0; bin < alone.intensity.size(); ++bin) {

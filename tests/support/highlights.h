@@ -34,8 +34,8 @@ inline const MeasuredCloth kLinen{"linen", {25}, 12, 24};
 inline PlaneScan mirror_scan(const Cloth& cloth, double azimuth, uint64_t paths) {
     const kernel::FibreTracer tracer(build_micro_element(cloth).fibres);
     const std::vector<FibreOptics> black(yarn_kinds(cloth).size(), {1.55, {1}, 0});
-    return scan_planes(tracer, black, Bands::from_edges({400, 700}), {{{Side::front, 0, azimuth}}},
-                       {.accuracy = 1e-6, .max_paths = paths})[0];
+    return scan_planes({&tracer, 1}, black, Bands::from_edges({400, 700}),
+                       {{{Side::front, 0, azimuth}}}, {.accuracy = 1e-6, .max_paths = paths})[0];
 }
 
 struct Highlight {

@@ -58,6 +58,9 @@ TEST_F(Command, RefusesAWrongCommandLine) {
                    {"--incidence", "95,0"});
     expect_refused({"vgsp", kSource + "/scenes/cloths/viscose-plain.toml", "--incidence", "30"},
                    {"two angles"});
+    expect_refused({"vgsp", kSource + "/scenes/cloths/viscose-plain.toml", "--plane", "0",
+                    "--theta-in", "45", "--resume"},
+                   {"--resume", "fewer --plane"});
     expect_refused({"render", "scene.txt"}, {"scene.txt", ".pbrt"});
     expect_refused({"render", kSource + "/scenes/quickstart.pbrt", "--size", "0x10"}, {"--size"});
     expect_refused({"render", kSource + "/scenes/quickstart.pbrt", "-o", "a.jpg"}, {"a.jpg"});

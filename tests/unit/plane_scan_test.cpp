@@ -16,7 +16,7 @@ const std::vector<FibreOptics> kDyed{{1.53, {0, 0.01, 0.1}, 0.01}};
 std::vector<PlaneScan> scanned(const FibreTracer& tracer,
                                const std::vector<IncidentDirection>& incident,
                                const GoniophotometerSettings& settings) {
-    return scan_planes(tracer, kDyed, Bands{}, incident, settings);
+    return scan_planes({&tracer, 1}, kDyed, Bands{}, incident, settings);
 }
 
 int brightest(const PlaneScan& scan, int block) {
@@ -127,6 +127,42 @@ TEST(PlaneScan, ItsErrorIsTheSpreadOfItsRuns) {
     EXPECT_NEAR(std::sqrt(claimed / actual), 1, 0.06);
 }
 
+/// Thicker and thinner fibres in turn: the mean of what each sends, and the spread between them.
+TEST(PlaneScan, AveragesRealisationsAndTellsTheirSpread) {
+    std::vector<FibreTracer> same, different;
+    for (const double radius : {4.6, 3.4}) {
+        same.emplace_back(tests::fibre_stack(4, 10, 4, 2));
+        different.emplace_back(tests::fibre_stack(4, 10, radius, 2));
+    }
+    const std::vector<IncidentDirection> incident{{Side::front, radians(30.0), 0}};
+    const auto scan = [&](std::span<const FibreTracer> realisations, uint64_t paths) {
+        return scan_planes(realisations, kDyed, Bands{}, incident,
+                           {.accuracy = 1e-6, .max_paths = paths})[0];
+    };
+    const PlaneScan both = scan(different, 200'000);
+    const PlaneScan each[] = {scan({&different[0], 1}, 100'000), scan({&different[1], 1}, 100'000)};
+    EXPECT_FALSE(each[0].realisation_error);
+    double excess = 0, variance = 0, difference2 = 0, total = 0;
+    for (size_t bin = 0; bin < both.mean_intensity.size(); ++bin) {
+        const double mean = 0.5 * (each[0].mean_intensity[bin] + each[1].mean_intensity[bin]);
+        const double noise =
+            0.25 * (square(each[0].mean_error[bin]) + square(each[1].mean_error[bin]));
+        excess += square(both.mean_intensity[bin] - mean);
+        variance += square(both.mean_error[bin]) + noise;
+        difference2 +=
+            square(each[0].mean_intensity[bin] - each[1].mean_intensity[bin]) - 4 * noise;
+        total += mean;
+    }
+    EXPECT_LT(excess, 1.5 * variance); // of some fifty bins that see light
+    // Of two values the variance of the mean is a quarter of their squared difference.
+    const double expected =
+        std::sqrt(static_cast<double>(both.mean_intensity.size()) * difference2 / 4) / total;
+    EXPECT_GT(expected, 0.1);
+    EXPECT_NEAR(both.realisation_error.value(), expected, 0.1 * expected);
+    EXPECT_LT(scan(same, 200'000).realisation_error.value(), 0.5 * both.accuracy);
+    EXPECT_EQ(scan(same, 3).realisation_error, 0);
+}
+
 TEST(PlaneScan, HonoursItsBoundsAndRefusesWhatHasNoMeaning) {
     const FibreTracer tracer(tests::fibre_stack(2, 12, 4.6, 2));
     const std::vector<IncidentDirection> incident{{Side::front, 0.5, 0}, {Side::front, 0.7, 0}};
@@ -136,7 +172,7 @@ TEST(PlaneScan, HonoursItsBoundsAndRefusesWhatHasNoMeaning) {
             EXPECT_EQ(scan.paths, most);
     double last = 0;
     const auto timed =
-        scan_planes(tracer, kDyed, Bands{}, incident, {.accuracy = 1e-4, .max_seconds = 0.2},
+        scan_planes({&tracer, 1}, kDyed, Bands{}, incident, {.accuracy = 1e-4, .max_seconds = 0.2},
                     [&](const GoniophotometerProgress& state) {
                         EXPECT_GE(state.fraction, last);
                         last = state.fraction;

@@ -24,6 +24,7 @@ TEST(OurCloths, AreOfImperfectFibresWithAKnownWeight) {
         for (const YarnKind& kind : yarn_kinds(cloth)) {
             EXPECT_TRUE(kind.yarn->fibre.density_g_cm3) << cloth.path << kind.place;
             EXPECT_GT(kind.yarn->fibre.diameter_variation, 0) << cloth.path << kind.place;
+            EXPECT_GT(kind.yarn->fibre.roughness, 0) << cloth.path << kind.place;
             EXPECT_GT(kind.yarn->irregularity.deviation_degrees, 0) << cloth.path << kind.place;
             EXPECT_GT(kind.yarn->irregularity.spacing_jitter_um, 0) << cloth.path << kind.place;
             EXPECT_GT(kind.yarn->irregularity.stray_fibres, 0) << cloth.path << kind.place;
