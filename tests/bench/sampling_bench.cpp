@@ -1,0 +1,119 @@
+#include "renderer/core/rng.h"
+#include "renderer/integrator/path_tracer.h"
+#include "renderer/scene/model_scene.h"
+#include "renderer/scene/scene_builder.h"
+#include "tests/bench/fitted_sampler.h"
+#include "tests/support/small_scenes.h"
+#include "tests/support/temporary_folder.h"
+
+#include <cstdio>
+#include <ctime>
+#include <glm/gtc/matrix_transform.hpp>
+
+// What sampling from the table buys over sampling from lobes that are fitted to it: lines of cloth,
+// sky, sampler, samples a pixel, seconds of processor time, and the mean and the variance of the
+// pixels' means, of a model under a sky. Runs of the two samplers alternate, each with random
+// numbers of its own. charts/sampling.py draws them:
+//
+//   build/tests/tests/sampling_bench scenes/garments/dress.glb TABLE.bsdf... SKY.exr... |
+//       python3 tests/bench/charts/sampling.py
+//
+// The skies are latitude–longitude pictures in linear RGB.
+
+namespace rapport {
+namespace {
+
+constexpr int kRounds = 3;
+constexpr const char* kCloth = "Body"; // the part of the model that wears the cloth
+
+/// A copy without the negative values that compression leaves in pictures, which lights refuse.
+std::filesystem::path without_negatives(const std::filesystem::path& sky,
+                                        const tests::TemporaryFolder& folder) {
+    Image image = read_exr(sky);
+    for (const char* channel : {"R", "G", "B"})
+        for (float& value : *image.find(channel))
+            value = std::max(value, 0.0f);
+    write_exr(image, folder / "sky.exr");
+    return folder / "sky.exr";
+}
+
+SceneDescription under_sky(const std::filesystem::path& model, const std::filesystem::path& sky) {
+    SceneDescription scene = describe_model(model, {96, 96});
+    scene.shapes.erase(scene.shapes.begin()); // the lamp
+    Param filename;
+    filename.type = "string";
+    filename.name = "filename";
+    filename.strings = {std::filesystem::absolute(sky).string()};
+    Params params("sampling_bench", "the sky", 0);
+    params.add(filename);
+    // Skies are +z up, models +y.
+    scene.lights = {
+        {"infinite", params, glm::rotate(glm::mat4(1), radians(-90.0f), glm::vec3(1, 0, 0))}};
+    scene.settings.sampler = Sampler::Kind::independent;
+    return scene;
+}
+
+Scene worn(const Scene& scene, const std::shared_ptr<const Bsdf>& material) {
+    std::vector<Surface> surfaces = scene.surfaces();
+    for (Surface& surface : surfaces)
+        if (surface.description && surface.description->name == kCloth)
+            surface.material = material;
+    return {scene, std::move(surfaces), scene.lights()};
+}
+
+void compare_samplers(const std::filesystem::path& model, const std::filesystem::path& cloth,
+                      const std::filesystem::path& sky) {
+    const auto table =
+        std::make_shared<const TableBsdf>(read_table(cloth), cloth.filename().string());
+    BuildOptions options;
+    options.cloths[kCloth] = cloth;
+    options.load_table = [&](const auto&, const auto&) { return table; };
+    std::vector<std::string> warnings;
+    const tests::TemporaryFolder folder;
+    const Scene built =
+        build_scene(under_sky(model, without_negatives(sky, folder)), options, warnings);
+    const auto by_table = tests::cloth_of(table);
+    const auto by_lobes = std::make_shared<const tests::FittedSampler>(by_table);
+    std::fprintf(stderr, "%s: %s\n", cloth.filename().c_str(), by_lobes->describe().c_str());
+
+    uint64_t seed = 0;
+    for (const int samples : {2, 8, 32})
+        for (int round = 0; round < kRounds; ++round)
+            for (const auto& [name, material] :
+                 {std::pair<const char*, std::shared_ptr<const Bsdf>>("table", by_table),
+                  {"lobes", by_lobes}}) {
+                Scene scene = worn(built, material);
+                scene.settings.samples = samples;
+                scene.settings.seed = ++seed;
+                const std::clock_t start = std::clock();
+                const Film film = render(scene);
+                const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+                const Film::Noise noise = film.noise();
+                std::printf("%s,%s,%s,%d,%.4f,%.6g,%.6g\n", cloth.stem().c_str(),
+                            sky.stem().c_str(), name, samples, seconds, noise.mean, noise.variance);
+                std::fflush(stdout);
+            }
+}
+
+} // namespace
+} // namespace rapport
+
+int main(int count, char** arguments) {
+    if (count < 4) {
+        std::fputs("usage: sampling_bench MODEL.glb TABLE.bsdf... SKY.exr...\n", stderr);
+        return 2;
+    }
+    std::vector<std::filesystem::path> tables, skies;
+    for (int i = 2; i < count; ++i) {
+        const std::filesystem::path file = arguments[i];
+        if (!std::filesystem::exists(file)) { // skies are no part of the checkout
+            std::fprintf(stderr, "%s: not there, left out\n", file.c_str());
+            continue;
+        }
+        (file.extension() == ".exr" ? skies : tables).push_back(file);
+    }
+    std::puts("cloth,sky,sampler,samples,seconds,mean,variance");
+    for (const auto& table : tables)
+        for (const auto& sky : skies)
+            rapport::compare_samplers(arguments[1], table, sky);
+}
