@@ -37,8 +37,10 @@ struct Surface {
 struct SurfacePoint {
     glm::vec3 position;
     glm::vec3 geometric_normal; ///< unit, of the face side
-    /// Shading: z = face side, y = warp (∂P/∂v made orthonormal to z), x = weft = y × z. Where the
-    /// UVs do not tell, any frame about z.
+    /// Shading: z = face side, y = warp (∂P/∂v made orthonormal to z), x = weft = y × z: where the
+    /// cloth is sheared, its table keeps the warp's direction, the nearest of the orthogonal rules
+    /// to a sheared cloth measured anew (tests/bench/charts/shear.svg). Where the UVs do not tell,
+    /// any frame about z.
     Frame frame;
     glm::vec2 uv; ///< 0 without UVs
     const Surface* surface;

@@ -3,6 +3,7 @@
 
 #include "tests/support/highlights.h"
 #include "tests/support/mirror_images.h"
+#include "tests/support/sheared_cloth.h"
 #include "tests/support/stability.h"
 #include "tests/support/union_of_disks.h"
 
@@ -177,6 +178,45 @@ void sides() {
     }
 }
 
+/// How far cloths that were sheared and measured anew scatter from what each rule makes of the
+/// unsheared one, over six directions of light. Fibres are thinned to keep clear of each other.
+void shear() {
+    constexpr uint64_t kFewPaths = 50'000;
+    const std::vector<IncidentDirection> incident{
+        {Side::front, radians(20.0), radians(20.0)},  {Side::front, radians(50.0), radians(75.0)},
+        {Side::front, radians(65.0), radians(130.0)}, {Side::front, radians(40.0), radians(165.0)},
+        {Side::back, radians(30.0), radians(50.0)},   {Side::back, radians(60.0), radians(110.0)}};
+    const auto chart = [&](const std::string& name,
+                           const std::vector<std::pair<int, int>>& closures) {
+        kernel::FibreAssembly fibres =
+            build_micro_element(read_cloth(RAPPORT_SOURCE_DIR "/scenes/cloths/" + name + ".toml"))
+                .fibres;
+        for (kernel::FibreChain& chain : fibres.chains)
+            chain.radius *= 0.85;
+        const kernel::FibreTracer unsheared(fibres);
+        for (const auto& [rows, columns] : closures) {
+            const tests::ShearedCloth cloth = tests::sheared(fibres, rows, columns);
+            const kernel::FibreTracer tracer(cloth.fibres);
+            std::vector<tests::Departure> departures(tests::kShearRules.size());
+            for (const IncidentDirection& direction : incident) {
+                const tests::ExitCounts truth =
+                    tests::sheared_exits(tracer, glm::dmat2(1), direction, kFewPaths, 1);
+                for (size_t r = 0; r < departures.size(); ++r)
+                    departures[r].add(
+                        truth,
+                        tests::sheared_exits(unsheared, tests::kShearRules[r].to_table(cloth.angle),
+                                             direction, kFewPaths, 2),
+                        direction, kFewPaths);
+            }
+            for (size_t r = 0; r < departures.size(); ++r)
+                row("shear", (name + "; " + tests::kShearRules[r].name).c_str(),
+                    degrees(cloth.angle), departures[r].value(), 0);
+        }
+    };
+    chart("viscose-plain", {{4, 1}, {3, 1}});
+    chart("viscose-satin", {{4, 1}, {2, 1}});
+}
+
 /// The scans of tests/statistical/highlights_test.cpp; "measured" rows tell angles only.
 void highlights() {
     for (const auto& [file, measured] : {std::pair("silk-charmeuse", &tests::kSatinCharmeuse),
@@ -203,11 +243,11 @@ void highlights() {
 
 int main(int argc, char** argv) {
     constexpr std::pair<std::string_view, void (*)()> kSweeps[]{
-        {"incidence", rapport::incidence},  {"overlap", rapport::overlap},
-        {"twist", rapport::twist},          {"cell", rapport::cell},
-        {"scale", rapport::scale},          {"optics", rapport::optics},
-        {"segments", rapport::segments},    {"sides", rapport::sides},
-        {"highlights", rapport::highlights}};
+        {"incidence", rapport::incidence},   {"overlap", rapport::overlap},
+        {"twist", rapport::twist},           {"cell", rapport::cell},
+        {"scale", rapport::scale},           {"optics", rapport::optics},
+        {"segments", rapport::segments},     {"sides", rapport::sides},
+        {"highlights", rapport::highlights}, {"shear", rapport::shear}};
     std::puts("sweep,curve,parameter,value,error");
     for (const auto& [name, sweep] : kSweeps)
         if (argc == 1 || std::find(argv + 1, argv + argc, name) != argv + argc)

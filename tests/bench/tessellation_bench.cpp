@@ -1,17 +1,20 @@
 #include "materials/table/table_bsdf.h"
 #include "renderer/integrator/path_tracer.h"
+#include "renderer/scene/gltf/gltf.h"
 #include "renderer/scene/model_scene.h"
 #include "renderer/scene/scene_builder.h"
 #include "tests/support/synthetic_tables.h"
 
 #include <chrono>
 #include <cstdio>
+#include <limits>
 
-// What finer tessellation buys: lines of model, curve, parameter (pixels, or pieces to an edge),
-// triangles, seconds to build the scene, and error of the picture: RMS difference from the finest
-// over the mean, of the pixels that show the model. All pictures, of 512², have the same random
-// numbers, so that hardly more than their geometry differs; "noise" is what 64 samples a pixel
-// leave for comparison. charts/tessellation.py draws them:
+// What finer tessellation buys: lines of model and view, curve, parameter (pixels, or pieces to an
+// edge), triangles, seconds to build the scene, and error of the picture: RMS difference from the
+// finest over the mean, of the pixels that show the model. The model is seen framed whole, and from
+// close up: from a tenth of that distance. All pictures, of 512², have the same random numbers, so
+// that hardly more than their geometry differs; "noise" is what 64 samples a pixel leave for
+// comparison. charts/tessellation.py draws them:
 //
 //   build/tests/tests/tessellation_bench scenes/garments/dress.glb |
 //       python3 tests/bench/charts/tessellation.py
@@ -19,8 +22,15 @@
 namespace rapport {
 namespace {
 
-constexpr int kReferenceLevel = 16;
 constexpr int kSamples = 16;
+
+struct View {
+    const char* name;
+    float distance; ///< of the camera from its middle, in that at which it is framed whole
+    std::pair<const char*, double> finest; ///< the parameter of the reference
+};
+constexpr View kViews[]{{"framed whole", 1, {"level", 16}},
+                        {"close up", 0.1f, {"edgelength", 0.7}}};
 
 Param number(const std::string& type, const std::string& name, std::vector<double> values) {
     Param param;
@@ -48,8 +58,24 @@ struct Measured {
     double seconds = 0;
 };
 
-Measured picture(const std::filesystem::path& model, const std::string& parameter, double value) {
+/// Moves the camera towards what it sees in the middle of the frame, to `share` of the distance.
+void approach(Camera& camera, const GltfModel& model, float share) {
+    const glm::vec3 eye(camera.to_world[3]), forward(camera.to_world[2]);
+    float nearest = std::numeric_limits<float>::infinity();
+    for (const GltfPart& part : model.parts)
+        for (const glm::vec3& p : part.mesh.positions) {
+            const float along = glm::dot(p - eye, forward);
+            if (glm::distance(p, eye + along * forward) < 0.02f * along)
+                nearest = std::min(nearest, along);
+        }
+    camera.to_world[3] = glm::vec4(eye + (1 - share) * nearest * forward, 1);
+}
+
+Measured picture(const std::filesystem::path& model, const View& view, const std::string& parameter,
+                 double value) {
     SceneDescription scene = describe_model(model, {512, 512});
+    if (view.distance < 1)
+        approach(scene.camera, *scene.shapes.back().model, view.distance);
     scene.settings.samples = kSamples;
     scene.settings.max_depth = 1;
     scene.shapes.back().params.add(
@@ -90,24 +116,29 @@ template <class Square> double relative_rms(const Image& image, const Square& sq
 int main(int count, char** arguments) {
     using namespace rapport;
     std::puts("model,curve,parameter,triangles,seconds,error");
-    for (int i = 1; i < count; ++i) {
-        const std::filesystem::path model = arguments[i];
-        const Image reference = picture(model, "level", kReferenceLevel).image;
-        const auto& truth = *reference.find("G");
-        const auto& variance = *reference.find("variance.G");
-        std::printf("%s,noise,0,0,0,%.6f\n", model.stem().c_str(),
-                    relative_rms(reference, [&](size_t i) { return variance[i] * kSamples / 64; }));
-        const auto row = [&](const std::string& parameter, double value) {
-            const Measured made = picture(model, parameter, value);
-            std::printf("%s,%s,%g,%zu,%.4f,%.6f\n", model.stem().c_str(), parameter.c_str(), value,
-                        made.triangles, made.seconds, relative_rms(reference, [&](size_t i) {
-                            return square(double{(*made.image.find("G"))[i]} - double{truth[i]});
-                        }));
-            std::fflush(stdout);
-        };
-        for (const double level : {0, 1, 2, 3, 4, 6, 8, 12})
-            row("level", level);
-        for (const double pixels : {32.0, 16.0, 8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0, 0.7})
-            row("edgelength", pixels);
-    }
+    for (int i = 1; i < count; ++i)
+        for (const View& view : kViews) {
+            const std::filesystem::path model = arguments[i];
+            const std::string name = model.stem().string() + ", " + view.name;
+            const auto& [finest, finest_value] = view.finest;
+            const Image reference = picture(model, view, finest, finest_value).image;
+            const auto& truth = *reference.find("G");
+            const auto& variance = *reference.find("variance.G");
+            std::printf(
+                "\"%s\",noise,0,0,0,%.6f\n", name.c_str(),
+                relative_rms(reference, [&](size_t i) { return variance[i] * kSamples / 64; }));
+            const auto row = [&](const std::string& parameter, double value) {
+                const Measured made = picture(model, view, parameter, value);
+                std::printf("\"%s\",%s,%g,%zu,%.4f,%.6f\n", name.c_str(), parameter.c_str(), value,
+                            made.triangles, made.seconds, relative_rms(reference, [&](size_t i) {
+                                return square(double{(*made.image.find("G"))[i]} -
+                                              double{truth[i]});
+                            }));
+                std::fflush(stdout);
+            };
+            for (const double level : {0, 1, 2, 3, 4, 6, 8, 12})
+                row("level", level);
+            for (const double pixels : {32.0, 16.0, 8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0})
+                row("edgelength", pixels);
+        }
 }

@@ -8,7 +8,7 @@
 namespace rapport {
 namespace {
 
-constexpr float kMostTilt = radians(30.0f);
+constexpr float kMostTilt = radians(60.0f);
 /// By which a rate rises at most before the surface is looked at again.
 constexpr float kMostAtOnce = 8;
 constexpr size_t kFacesPerBatch = 256;

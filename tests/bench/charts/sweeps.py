@@ -37,6 +37,8 @@ CHARTS = {
                  "RMS difference over the mean", "log", "log"),
     "sides": ("Extended cells", "repeats of the draft along both yarns",
               "RMS difference over the mean, without noise", "log", "linear"),
+    "shear": ("Sheared cloth against rules for its table", "shear [°]",
+              "RMS difference over the mean, without noise", "linear", "linear"),
     "highlights": ("Light along the normal (shaded: highlights as measured)",
                    "angle of exit along the warp [°]", "intensity [1/sr]", "linear", "log"),
 }
@@ -49,7 +51,7 @@ def main():
         points.append((float(row["parameter"]), float(row["value"]), float(row["error"])))
     for sweep, named in curves.items():
         title, x_label, y_label, x_scale, y_scale = CHARTS[sweep]
-        figure, axes = plt.subplots(figsize=(5, 3.2), layout="constrained")
+        figure, axes = plt.subplots(figsize=(5 if len(named) <= 6 else 7.5, 3.2), layout="constrained")
         for name, points in named.items():
             x, y, error = zip(*points)
             if name.startswith("measured: "):
@@ -62,7 +64,9 @@ def main():
                 axes.errorbar(x, y, yerr=error, marker=".", linewidth=1, capsize=2, label=name)
         axes.set(title=title, xlabel=x_label, ylabel=y_label, xscale=x_scale, yscale=y_scale)
         axes.grid(alpha=0.3)
-        if len(named) > 1:
+        if len(named) > 6:  # beside the curves
+            axes.legend(bbox_to_anchor=(1.02, 1), loc="upper left", fontsize=7)
+        elif len(named) > 1:
             axes.legend()
         file = pathlib.Path(__file__).parent / f"{sweep}.svg"
         figure.savefig(file, metadata={"Date": None})
