@@ -61,9 +61,18 @@ bool survives(Rgb& throughput, Sampler& sampler) {
     return true;
 }
 
-/// Light scattered towards the eye out of one sampled direction of one sampled light.
+/// How often a path goes straight on where the share `through` of the light does: by the shares of
+/// the light, so that either way the path carries the same on.
+float chance_to_pass(const Bsdf& material, const glm::vec3& eye, float through, bool scatters) {
+    if (!(through > 0))
+        return 0;
+    return scatters ? through / (through + mean(material.albedo(eye))) : 1;
+}
+
+/// Light scattered towards the eye out of one sampled direction of one sampled light. The path will
+/// look for the same by the BSDF with probability `chance`.
 Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& frame,
-                 const FoldedBsdf& bsdf, Sampler& sampler) {
+                 const FoldedBsdf& bsdf, float chance, Sampler& sampler) {
     const auto choice = scene.choose_light(sampler.next_1d());
     if (!choice)
         return Rgb(0);
@@ -85,7 +94,7 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
     if (light->delta)
         return arriving / choice->probability;
     const float density = choice->probability * light->pdf;
-    return arriving * (balance(density, pdf) / density);
+    return arriving * (balance(density, chance * pdf) / density);
 }
 
 Rgb escaped_radiance(const Scene& scene, const glm::vec3& direction, const Scattering& last) {
@@ -155,21 +164,23 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
         const Bsdf& material = *point->surface->material;
         if (first)
             path.albedo = material.albedo(eye) * point->reflectance();
+        const bool scatters = depth < scene.settings.max_depth;
         const Rgb unscattered = material.unscattered(eye);
-        if (const float pass = std::min(mean(unscattered), 1.0f); pass > 0) {
-            if (sampler.next_1d() < pass) {
-                throughput *= unscattered / pass;
-                ray = {offset_origin(*point, ray.dir), ray.dir};
-                ++layers;
-                continue;
-            }
-            throughput /= 1 - pass;
-        }
-        if (depth++ == scene.settings.max_depth)
-            break;
-
+        const float pass = chance_to_pass(material, eye, mean(unscattered), scatters);
         const FoldedBsdf bsdf(material, eye, frame.to_local(point->geometric_normal));
-        path.radiance += throughput * direct_light(scene, *point, frame, bsdf, sampler);
+        if (scatters && pass < 1)
+            path.radiance +=
+                throughput * direct_light(scene, *point, frame, bsdf, 1 - pass, sampler);
+        if (pass > 0 && sampler.next_1d() < pass) {
+            throughput *= unscattered / pass;
+            ray = {offset_origin(*point, ray.dir), ray.dir};
+            ++layers;
+            continue;
+        }
+        if (!scatters)
+            break;
+        ++depth;
+        throughput /= 1 - pass;
 
         const float choice = sampler.next_1d();
         const auto sample = bsdf.sample(choice, sampler.next_2d());
@@ -181,7 +192,7 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
         throughput *= sample->weight * point->reflectance();
         if (throughput == Rgb(0) || (depth > kRouletteDepth && !survives(throughput, sampler)))
             break;
-        last = Scattering{point->position, sample->pdf};
+        last = Scattering{point->position, sample->pdf * (1 - pass)};
         ray = {offset_origin(*point, direction), direction};
         layers = 0;
     }
