@@ -62,7 +62,7 @@ TEST_P(FarView, OfExplicitFibresEqualsThatOfTheirTable) {
                 {{Side::back, 60 * kDegree, 270 * kDegree}, {{{40, 60}, {160, 90}, {20, 0}}}},
             });
     const Cloth cloth = dyed_cloth(GetParam());
-    const int samples = tests::long_run() ? 4'000 : 600;
+    const int samples = tests::long_run() ? 4'000 : 1'000;
     const auto table = std::make_shared<const TableBsdf>(measured_table(cloth, views, 64 * samples),
                                                          "swatch.bsdf");
     constexpr float kWindow = 0.03f, kSwatch = 0.15f; // half widths [m]
