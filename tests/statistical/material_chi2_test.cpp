@@ -177,7 +177,6 @@ TEST(MaterialChi2, SamplesHaveTheirDensity) {
         EXPECT_LE(disagreements, samples / 10000);
         const double share_lost = static_cast<double>(lost) / samples;
         EXPECT_NEAR(integral, 1 - share_lost, 2e-3 + 5 * std::sqrt(share_lost / samples));
-        // Of a file's, rounding moves a few at 89.9° over the horizon, 1 in 300,000.
         EXPECT_LE(share_lost, is_rough_boundary(name) ? 0.3 : 0);
         const auto result = tests::chi_square_test(observed, expected);
         EXPECT_FALSE(result.impossible);
