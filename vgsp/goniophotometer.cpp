@@ -2,19 +2,20 @@
 
 #include "renderer/core/parallel.h"
 #include "vgsp/checkpoint_file.h"
-#include "vgsp/path_forecast.h"
+#include "vgsp/path_tally.h"
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 #include <stdexcept>
 
 namespace rapport {
 namespace {
 
 constexpr uint64_t kBatchPaths = 1024;
-constexpr uint64_t kPilotPaths = 1024; ///< per direction, and twice as many again while it pays, …
-constexpr uint64_t kMostPilotPaths = 32768; ///< … up to this
-constexpr double kPlannedSigmas = 4;
+constexpr uint64_t kPilotPaths = 1024;        ///< per direction, and twice as many again …
+constexpr uint64_t kPlannedPerPilotPath = 32; ///< … while each of them plans so many, …
+constexpr uint64_t kMostPilotPaths = 32768;   ///< … up to this
 constexpr uint64_t kMostPaths = uint64_t{1} << 40;
 constexpr uint64_t kFirstPilotPath = kMostPaths;   ///< the pilot's numbers come after all others
 constexpr size_t kWaitingBytes = size_t{64} << 20; ///< of deposits that wait to be summed
@@ -62,8 +63,16 @@ class Run {
     uint64_t paths(const std::vector<PathTally>& tallies, size_t direction) const {
         return tallies[direction * dyes_].paths();
     }
+    uint64_t most_paths() const {
+        return settings_.max_paths > 0 ? settings_.max_paths : kMostPaths;
+    }
     /// How many paths each direction gets.
     std::vector<uint64_t> plan() const;
+    /// More of them for the directions that have had theirs and claim a larger ε than was asked.
+    void extend(std::vector<uint64_t>& planned, const std::vector<PathTally>& tallies) const;
+    /// Of all that is planned.
+    double share_done(std::span<const uint64_t> planned,
+                      const std::vector<PathTally>& tallies) const;
     /// Adds the batches of paths [first, until) of a direction, in all groups of bands.
     void add_tasks(std::vector<Task>& tasks, size_t direction, uint64_t first,
                    uint64_t until) const;
@@ -92,63 +101,56 @@ class Run {
 
 void Run::add_tasks(std::vector<Task>& tasks, size_t direction, uint64_t first,
                     uint64_t until) const {
-    for (uint64_t k = first; k < until; k += kBatchPaths)
+    // Batches end at their multiples, wherever a wave does.
+    for (uint64_t k = first, end; k < until; k = end) {
+        end = std::min(until, (k / kBatchPaths + 1) * kBatchPaths);
         for (size_t group = 0; group < tracers_.groups; ++group)
-            tasks.push_back({direction, group, k, std::min(kBatchPaths, until - k)});
+            tasks.push_back({direction, group, k, end - k});
+    }
 }
 
-/// Whether twice the pilot costs fewer paths than it takes off the plan.
-bool larger_pilot_pays(const PathForecast& forecast, uint64_t paths, double accuracy) {
-    const double ideal = forecast.error_of_one_path / square(accuracy);
-    const double saved = ideal * (forecast.margin(ideal, kPlannedSigmas) -
-                                  forecast.margin(ideal, kPlannedSigmas, 2));
-    return static_cast<double>(paths) < saved;
-}
-
-/// How many paths reach `accuracy`, but for the risk of kPlannedSigmas.
-uint64_t paths_needed(const PathForecast& forecast, double accuracy) {
-    const double needed = std::ceil(forecast.paths_needed(accuracy, kPlannedSigmas));
-    // Where nothing scatters there is no error to plan by (it is not a number), and paths are
-    // short: as many as the pilot had tell what goes straight through.
-    if (std::isnan(needed))
+/// How many paths make ε `accuracy`, going by those of a tally.
+uint64_t paths_needed(const PathTally& tally, double accuracy) {
+    const double needed = std::ceil(tally.error_of_one_path() / square(accuracy));
+    // Where nothing scatters there is no error to plan by, and paths are short: as many as a pilot
+    // may have tell what goes straight through.
+    if (needed == 0)
         return kMostPilotPaths;
     return needed < kMostPaths ? static_cast<uint64_t>(needed) : kMostPaths;
 }
 
 std::vector<uint64_t> Run::plan() const {
-    const uint64_t most = settings_.max_paths > 0 ? settings_.max_paths : kMostPaths;
-    std::vector<uint64_t> planned(table_.directions(), most);
-    if (most <= kPilotPaths)
+    std::vector<uint64_t> planned(table_.directions(), most_paths());
+    if (most_paths() <= kPilotPaths)
         return planned;
     std::vector<PathTally> pilots = empty_tallies();
-    std::vector<std::vector<PathForecast>> forecasts(planned.size()); // of each set of dyes
     std::vector<Task> tasks;
     do {
         tasks.clear();
         for (size_t d = 0; d < planned.size(); ++d) {
             const uint64_t done = paths(pilots, d), until = std::max(kPilotPaths, 2 * done);
-            const auto pays = [&](const PathForecast& forecast) {
-                return larger_pilot_pays(forecast, done, settings_.accuracy);
-            };
-            if (done == 0 || (until <= std::min(kMostPilotPaths, most) &&
-                              std::ranges::any_of(forecasts[d], pays)))
+            if (done == 0 || until <= std::min(kMostPilotPaths, planned[d] / kPlannedPerPilotPath))
                 add_tasks(tasks, d, kFirstPilotPath + done, kFirstPilotPath + until);
         }
         trace(tasks, pilots);
         for (size_t d = 0; d < planned.size(); ++d) {
-            forecasts[d].clear();
-            const std::vector<uint8_t> regions = PathForecast::regions(table_, d);
+            planned[d] = kBatchPaths;
             for (const PathTally& pilot : of_direction(pilots, d))
-                forecasts[d].emplace_back(pilot, regions);
+                planned[d] = std::max(planned[d], paths_needed(pilot, settings_.accuracy));
+            planned[d] = std::min(most_paths(), planned[d]);
         }
     } while (!tasks.empty());
-    for (size_t d = 0; d < planned.size(); ++d) {
-        planned[d] = kBatchPaths;
-        for (const PathForecast& forecast : forecasts[d])
-            planned[d] = std::max(planned[d], paths_needed(forecast, settings_.accuracy));
-        planned[d] = std::min(most, planned[d]);
-    }
     return planned;
+}
+
+void Run::extend(std::vector<uint64_t>& planned, const std::vector<PathTally>& tallies) const {
+    for (size_t d = 0; d < planned.size(); ++d)
+        for (const PathTally& tally : of_direction(tallies, d)) {
+            if (tally.accuracy() <= settings_.accuracy)
+                continue;
+            const uint64_t batches = paths_needed(tally, settings_.accuracy) / kBatchPaths + 1;
+            planned[d] = std::min(most_paths(), std::max(planned[d], batches * kBatchPaths));
+        }
 }
 
 void Run::trace(std::span<const Task> tasks, std::vector<PathTally>& tallies) const {
@@ -209,6 +211,14 @@ double Run::save(const std::vector<uint64_t>& planned,
     return seconds() - since;
 }
 
+double Run::share_done(std::span<const uint64_t> planned,
+                       const std::vector<PathTally>& tallies) const {
+    double done = 0;
+    for (size_t d = 0; d < planned.size(); ++d)
+        done += static_cast<double>(paths(tallies, d));
+    return done / std::accumulate(planned.begin(), planned.end(), 0.0);
+}
+
 /// Wave after wave, all directions advance by the same share of what is planned for them. How
 /// large a wave is changes nothing in the result: it follows the machine's speed.
 GoniophotometerCounts
@@ -219,17 +229,14 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
         planned = plan();
         save(planned, tallies);
     }
-    double total = 0, done = 0;
-    for (size_t d = 0; d < planned.size(); ++d) {
-        total += static_cast<double>(planned[d]);
-        done += static_cast<double>(paths(tallies, d));
+    for (size_t d = 0; d < planned.size(); ++d)
         resumed_paths_ += tallies[d * dyes_].counts().paths;
-    }
-    double share = resumed_fraction_ = done / total;
+    double share = resumed_fraction_ = share_done(planned, tallies);
     tracing_since_ = seconds();
     double wave = 16.0 * thread_count(); // batches
     for (bool first = true; share < 1 && (first || !time_is_up()); first = false) {
         const double wave_since = seconds();
+        const double total = std::accumulate(planned.begin(), planned.end(), 0.0);
         share = std::min(1.0, share + wave * kBatchPaths / total);
         std::vector<Task> tasks;
         for (size_t d = 0; d < planned.size(); ++d) {
@@ -240,6 +247,10 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
             add_tasks(tasks, d, paths(tallies, d), until);
         }
         trace(tasks, tallies);
+        if (share == 1) {
+            extend(planned, tallies);
+            share = share_done(planned, tallies);
+        }
         const double took = seconds() - wave_since;
         const double saving = share < 1 ? save(planned, tallies) : 0;
         if (progress)

@@ -50,12 +50,13 @@ struct GoniophotometerCounts {
 /// of them at its end. The accuracy asked for is then reached in all, and the one that progress
 /// tells is the largest.
 ///
-/// How many paths a direction gets is fixed before they are traced, by a pilot whose own paths are
-/// thrown away: to stop when the estimate looks good would make it look better than it is. Planned
-/// for are four standard deviations of what the pilot leaves open and of what the run itself will
-/// claim (path_forecast.h), so that ε seldom ends above what was asked; where it does, it is
-/// reported as it is. Only `max_seconds` makes the result depend on the machine; the first
-/// increment (at least one batch of each direction) is made even if the time is up.
+/// How many paths a direction gets is planned before they are traced, by a pilot whose own paths
+/// are thrown away: to stop whenever the estimate looks good would make it look better than it is.
+/// Where the paths planned turn out to leave ε above what was asked, as many more are added as they
+/// themselves call for, until none is above; how little that flatters ε is measured
+/// (tests/statistical/goniophotometer_error_test.cpp). Only `max_seconds` makes the result depend
+/// on the machine; the first increment (at least one batch of each direction) is made even if the
+/// time is up.
 ///
 /// The pilot is the checkpoint's first increment. A checkpoint knows the run that it belongs to by
 /// `table.metadata`, which must tell all that decides the result, and the incident directions:

@@ -45,7 +45,6 @@ PathTally::PathTally(const BsdfTable& table, size_t direction, size_t realisatio
         solid_angle_[bin] = exits.solid_angle(bin % bins);
     sum_.assign(2 * bins * bands_, 0.0);
     sum_mean2_.assign(2 * bins, 0.0);
-    sum_mean4_.assign(2 * bins, 0.0);
     quarter_.assign(2 * bins * 4, 0.0);
     if (realisations > 1)
         realisation_.assign(2 * bins * realisations, 0.0);
@@ -71,9 +70,7 @@ void PathTally::add(const PathBatch& batch, size_t dyes) {
                 mean += weight[band];
             }
             mean /= static_cast<double>(bands_);
-            const double mean2 = square(mean);
-            sum_mean2_[bin] += mean2;
-            sum_mean4_[bin] += square(mean2);
+            sum_mean2_[bin] += square(mean);
             quarter_[*quarter] += mean;
             if (realisations > 1)
                 realisation_[bin * realisations + realisation] += mean;
@@ -90,11 +87,6 @@ void PathTally::add(const PathBatch& batch, size_t dyes) {
 double PathTally::total() const {
     const double sum = std::accumulate(sum_.begin(), sum_.end(), 0.0);
     return sum / static_cast<double>(bands_ * paths());
-}
-
-double PathTally::mean(size_t bin) const {
-    const double* sums = &sum_[bin * bands_];
-    return std::accumulate(sums, sums + bands_, 0.0) / static_cast<double>(bands_ * paths());
 }
 
 double PathTally::scale() const {
@@ -198,8 +190,8 @@ template <class... Lists> auto lists_of(Lists&... lists) { return std::array{std
 
 std::vector<double> PathTally::sums() const {
     std::vector<double> all;
-    for (const auto list : lists_of(sum_, sum_mean2_, sum_mean4_, quarter_, realisation_,
-                                    unscattered_, capped_, lost_))
+    for (const auto list :
+         lists_of(sum_, sum_mean2_, quarter_, realisation_, unscattered_, capped_, lost_))
         all.insert(all.end(), list.begin(), list.end());
     return all;
 }
@@ -214,8 +206,8 @@ std::vector<uint64_t> PathTally::path_counts() const {
 void PathTally::restore(std::span<const double> sums, std::span<const uint64_t> path_counts) {
     if (sums.size() != this->sums().size() || path_counts.size() != this->path_counts().size())
         throw std::invalid_argument("a tally's sums are of another run");
-    for (const auto list : lists_of(sum_, sum_mean2_, sum_mean4_, quarter_, realisation_,
-                                    unscattered_, capped_, lost_)) {
+    for (const auto list :
+         lists_of(sum_, sum_mean2_, quarter_, realisation_, unscattered_, capped_, lost_)) {
         std::copy_n(sums.begin(), list.size(), list.begin());
         sums = sums.subspan(list.size());
     }

@@ -66,15 +66,8 @@ class PathTally {
     /// Throws std::invalid_argument for lists of another length.
     void restore(std::span<const double> sums, std::span<const uint64_t> path_counts);
 
-    /// Sums over the paths by bin of both blocks, for a forecast (path_forecast.h): of the squares
-    /// and of the fourth powers of a weight's mean over the bands.
-    std::span<const double> squares() const { return sum_mean2_; }
-    std::span<const double> fourth_powers() const { return sum_mean4_; }
-    std::span<const double> solid_angles() const { return solid_angle_; } ///< [sr]
-    double total() const;                                                 ///< E[w]
-    double mean(size_t bin) const;                                        ///< E[w]_b
-
   private:
+    double total() const; ///< E[w]
     /// 4π/E[w]², or 0 where nothing scatters: makes Σ_b (ΔΦ_b)²/Ω_b of fluxes the squared error.
     double scale() const;
 
@@ -82,7 +75,6 @@ class PathTally {
     size_t bands_, groups_;
     std::vector<double> sum_;         ///< [bin, band], of weights
     std::vector<double> sum_mean2_;   ///< [bin], of squared band means of the weight
-    std::vector<double> sum_mean4_;   ///< [bin], of their fourth powers
     std::vector<double> quarter_;     ///< [bin, 4], of band means
     std::vector<double> realisation_; ///< [bin, realisation], of band means; empty for one
     std::vector<double> unscattered_, capped_, lost_;
