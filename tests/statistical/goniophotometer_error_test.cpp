@@ -96,7 +96,7 @@ void expect_honest(const Subject& subject, double asked, int seeds, uint64_t ref
     // Few seeds tell no ratio to 5 %: of them only what chance cannot have done is told.
     const double bound = tests::long_run() ? 0.05 : 3.5 * sigma;
     EXPECT_NEAR(ratio, 1, bound);
-    EXPECT_GT(std::abs(ratio / (tests::long_run() ? 1.1 : 1.25) - 1), bound)
+    EXPECT_GT(std::abs(ratio / (tests::long_run() ? 1.1 : 1.2) - 1), bound)
         << "an error claimed too small would pass";
     EXPECT_EQ(missed, 0) << "runs that ended above the accuracy asked for";
     // Paths added where ε was too large hardly bias the mean.
