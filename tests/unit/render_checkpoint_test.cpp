@@ -10,6 +10,7 @@
 #include "tests/support/temporary_folder.h"
 
 #include <atomic>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -160,15 +161,17 @@ TEST(Command, AKilledPictureIsResumedToTheSamePixels) {
                               unsigned killed_after) {
         return tests::run_and_kill_program(
             {"render", RAPPORT_SOURCE_DIR "/scenes/garments/dress.glb", "--size", "64x64", "--spp",
-             "700", "--threads", threads, "--resume", "-o", output},
+             "2000", "--threads", threads, "--resume", "-o", output},
             killed_after);
     };
+    const auto start = std::chrono::steady_clock::now();
     rendered(whole, "2", 0);
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - start;
     int kills = 0;
     CounterRng rng(static_cast<uint64_t>(getpid()), Purpose::test, 0, 0);
     for (int i = 0; i < 3; ++i)
         kills += rendered(killed, std::to_string(1 + i),
-                          1'500'000 + static_cast<unsigned>(1e6 * rng.uniform()));
+                          static_cast<unsigned>(took.count() * (0.3 + 0.3 * rng.uniform())));
     rendered(killed, "2", 0);
     EXPECT_EQ(read_exr(killed).data, read_exr(whole).data);
     EXPECT_FALSE(std::filesystem::exists(killed + ".part"));
