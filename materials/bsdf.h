@@ -58,8 +58,8 @@ class Bsdf {
         (void)eye;
         return Rgb(0);
     }
-    /// Share of the light from `eye` that is scattered, for the albedo image and for how often paths
-    /// are; an estimate will do, 0 only where nothing is.
+    /// Share of the light from `eye` that is scattered, for the albedo image and for how often
+    /// paths are; an estimate will do, 0 only where nothing is.
     virtual Rgb albedo(const glm::vec3& eye) const = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "renderer/app/lettering.h"
 
+#include "renderer/preview/font.h"
+
 #include <cmath>
 #include <filesystem>
 #include <imgui.h>
@@ -7,7 +9,6 @@
 namespace rapport {
 namespace {
 
-constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 constexpr float kSize = 12;
 
 /// Dear ImGui's atlas of letters as pixels of memory: it needs no window.

@@ -61,12 +61,10 @@ bool survives(Rgb& throughput, Sampler& sampler) {
     return true;
 }
 
-/// How often a path goes straight on where the share `through` of the light does: by the shares of
-/// the light, so that either way the path carries the same on.
-float chance_to_pass(const Bsdf& material, const glm::vec3& eye, float through, bool scatters) {
-    if (!(through > 0))
-        return 0;
-    return scatters ? through / (through + mean(material.albedo(eye))) : 1;
+/// How often a path goes straight on where the share `through` of the light does, and the share
+/// `scattered` is: by these shares, so that either way the path carries the same on.
+float chance_to_pass(float through, float scattered) {
+    return through > 0 ? through / (through + scattered) : 0;
 }
 
 /// Light scattered towards the eye out of one sampled direction of one sampled light. The path will
@@ -162,11 +160,13 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
         const Frame frame = frame_for(*point, -ray.dir);
         const glm::vec3 eye = frame.to_local(-ray.dir);
         const Bsdf& material = *point->surface->material;
-        if (first)
-            path.albedo = material.albedo(eye) * point->reflectance();
         const bool scatters = depth < scene.settings.max_depth;
         const Rgb unscattered = material.unscattered(eye);
-        const float pass = chance_to_pass(material, eye, mean(unscattered), scatters);
+        const float through = mean(unscattered);
+        const Rgb albedo = first || through > 0 ? material.albedo(eye) : Rgb(0);
+        if (first)
+            path.albedo = albedo * point->reflectance();
+        const float pass = chance_to_pass(through, scatters ? mean(albedo) : 0);
         const FoldedBsdf bsdf(material, eye, frame.to_local(point->geometric_normal));
         if (scatters && pass < 1)
             path.radiance +=

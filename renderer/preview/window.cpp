@@ -2,6 +2,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/png.h"
+#include "renderer/preview/font.h"
 
 #include <algorithm>
 #include <epoxy/gl.h> // before GLFW, which else brings its own
@@ -17,7 +18,6 @@
 namespace rapport {
 namespace {
 
-constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 constexpr float kFontSize = 14;
 
 std::string reason() {

@@ -37,12 +37,14 @@ import numpy
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared"
-SHARED = SHARED if SHARED.exists() else Path("/work/shared")
 SHEET = SHARED / "bench" / "cloth200k.ply"
 SKY = SHARED / "data" / "env" / "pmndrs_sunset.exr"
 PROGRAM = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "build" / "tests" / "rapport")
 RUNS, SAMPLES = int(os.environ.get("RUNS", 4)), int(os.environ.get("SAMPLES", 64))
 SCENES = sys.argv[3:] or ["sheet", "cloth", "garment"]
+for file in SHEET, SKY:
+    if not file.exists():
+        sys.exit(f"{file} is not here")
 
 
 def cpu(who):

@@ -38,6 +38,16 @@ surface_absorption = 0.01
 roughness = 0.2
 )";
 
+/// `text` with its only `old_words` replaced.
+inline std::string replaced(std::string_view text, std::string_view old_words,
+                            std::string_view new_words) {
+    std::string changed(text);
+    const size_t place = changed.find(old_words);
+    EXPECT_NE(place, std::string::npos) << old_words;
+    EXPECT_EQ(changed.find(old_words, place + 1), std::string::npos) << old_words;
+    return changed.replace(place, old_words.size(), new_words);
+}
+
 inline Cloth read_text(std::string_view text) {
     const TemporaryFolder folder;
     return read_cloth(write_bytes(folder, "cloth.toml", text));

@@ -16,13 +16,8 @@ using tests::kCloth;
 using tests::read_text;
 using tests::refusal;
 
-/// kCloth with its only `old_words` replaced.
 std::string with(std::string_view old_words, std::string_view new_words) {
-    std::string text(kCloth);
-    const size_t place = text.find(old_words);
-    EXPECT_NE(place, std::string::npos) << old_words;
-    EXPECT_EQ(text.find(old_words, place + 1), std::string::npos) << old_words;
-    return text.replace(place, old_words.size(), new_words);
+    return tests::replaced(kCloth, old_words, new_words);
 }
 
 constexpr std::string_view kPlainWif =

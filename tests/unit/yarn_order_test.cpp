@@ -49,10 +49,7 @@ refractive_index = 1.53
 )";
 
 std::string striped(std::string_view old_words, std::string_view new_words) {
-    std::string text(kStriped);
-    const size_t place = text.find(old_words);
-    EXPECT_NE(place, std::string::npos) << old_words;
-    return text.replace(place, old_words.size(), new_words);
+    return tests::replaced(kStriped, old_words, new_words);
 }
 
 TEST(YarnOrder, GivesEachThreadItsYarn) {
@@ -109,8 +106,9 @@ TEST(YarnOrder, FollowsTheColoursOfTheDraft) {
 }
 
 TEST(Colourway, NamesYarnsOfTheCloth) {
-    const std::string text = striped("", "") + "[colourway.a]\nyarn.red.color = [0.1, 0.2, 0.3]\n"
-                                               "yarn.spare.color = [0.1, 0.1, 0.1]\n";
+    const std::string text = std::string(kStriped) +
+                             "[colourway.a]\nyarn.red.color = [0.1, 0.2, 0.3]\n"
+                             "yarn.spare.color = [0.1, 0.1, 0.1]\n";
     const Cloth cloth = read_text(text);
     EXPECT_TRUE(cloth.colourways.at("a").at("yarn.red").color);
     EXPECT_EQ(cloth.colourways.at("a").size(), 1u); // the spare is not woven
