@@ -30,17 +30,22 @@ class FoldedBsdf {
     }
 
     std::optional<BsdfSample> sample(float choice, const glm::vec2& u) const {
-        auto sample = material_.sample(eye_, choice, u);
-        if (!sample || (agrees(sample->light) && agrees(mirrored(sample->light))))
-            return sample;
-        if (!agrees(sample->light))
-            sample->light = mirrored(sample->light);
-        if (!agrees(sample->light)) // along the surface
+        const auto drawn = material_.sample(eye_, choice, u);
+        if (!drawn)
             return std::nullopt;
-        if (sample->pdf == kMirror)
-            return sample;
-        const auto [value, pdf] = eval_and_pdf(sample->light);
-        return BsdfSample{sample->light, value / pdf, pdf};
+        const glm::vec3 other = mirrored(drawn->light);
+        const bool agreed = agrees(drawn->light);
+        if (agreed && agrees(other))
+            return drawn;
+        if (!agreed && !agrees(other)) // along the surface
+            return std::nullopt;
+        const glm::vec3 light = agreed ? drawn->light : other;
+        if (drawn->pdf == kMirror)
+            return BsdfSample{light, drawn->weight, kMirror};
+        // What was drawn has its own density, whatever rounding makes of its direction.
+        const auto [value, pdf] = material_.eval_and_pdf(eye_, other);
+        const float both = drawn->pdf + pdf;
+        return BsdfSample{light, (drawn->weight * drawn->pdf + value) / both, both};
     }
 
   private:
