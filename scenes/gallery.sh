@@ -24,7 +24,8 @@ for cloth in quickstart denim silk-shantung linen; do
 done
 [[ -f $model ]] && picture shared $((height * 4 / 5)) "$model" --cloth "$out/silk-shantung.bsdf"
 [[ -f build/quickstart/satin.bsdf ]] || cp "$out/quickstart.bsdf" build/quickstart/satin.bsdf
-picture close-up $((height * 8 / 5)) scenes/close-up.pbrt
+# Paths find the lamp by themselves alone between fibres: no sampling of lights to bring the noise down.
+"$rapport" render scenes/close-up.pbrt --size "$((height * 8 / 5))x$height" --spp 64 -o "$out/close-up.png"
 
 python3 - "$out" dress-quickstart dress-denim dress-silk-shantung dress-linen shared close-up <<'PYTHON'
 import sys
