@@ -12,14 +12,15 @@
 namespace rapport::kernel {
 namespace {
 
-// Embree builds its tree on threads of TBB, which read the block, and commits when they are done.
-// ThreadSanitizer cannot see that in those libraries' own code and is told here.
+// Embree builds its tree on threads of TBB, which read what this thread has written, and commits
+// when they are done. ThreadSanitizer cannot see how those libraries synchronise, and is told here:
+// whatever was done before memory was handed over is known to whoever takes it over.
 #if defined(__SANITIZE_THREAD__)
-void has_read(const FibreBlock& block) { __tsan_release(const_cast<FibreBlock*>(&block)); }
-void all_have_read(const FibreBlock& block) { __tsan_acquire(const_cast<FibreBlock*>(&block)); }
+void hand_over(const void* memory) { __tsan_release(const_cast<void*>(memory)); }
+void take_over(const void* memory) { __tsan_acquire(const_cast<void*>(memory)); }
 #else
-void has_read(const FibreBlock&) {}
-void all_have_read(const FibreBlock&) {}
+void hand_over(const void*) {}
+void take_over(const void*) {}
 #endif
 
 constexpr double kLargestShift = std::numeric_limits<int16_t>::max();
@@ -80,18 +81,22 @@ struct Callbacks {
 
     static void bounds(const RTCBoundsFunctionArguments* arguments) {
         const auto& block = *static_cast<const FibreBlock*>(arguments->geometryUserPtr);
+        take_over(&block);
         const FibreBlock::Copy& copy = block.copies_[arguments->primID];
         const auto [low, high] = kernel::bounds(block.segments_[copy.segment]);
         const glm::dvec3 offset = block.offset(copy.shift), pad(4 * block.tolerance_);
         const glm::vec3 from(low + offset - pad), to(high + offset + pad);
         *arguments->bounds_o = {from.x, from.y, from.z, 0, to.x, to.y, to.z, 0};
-        has_read(block);
+        hand_over(&block);
     }
 
     /// Embree asks whether it is to go on with the hierarchy.
     static bool goes_on(void* stop_signal, double) {
+        take_over(stop_signal);
         const auto& stopped = *static_cast<const StopSignal*>(stop_signal);
-        return !(stopped && stopped());
+        const bool goes_on = !(stopped && stopped());
+        hand_over(stop_signal);
+        return goes_on;
     }
 
     /// The origin is within rounding of this copy's surface, or inside its cylinder: decided in
@@ -189,8 +194,11 @@ FibreBlock::FibreBlock(const FibreAssembly& assembly, const StopSignal& stopped)
     rtcSetSceneBuildQuality(embree_->scene.get(), RTC_BUILD_QUALITY_HIGH);
     rtcSetSceneProgressMonitorFunction(embree_->scene.get(), Callbacks::goes_on,
                                        const_cast<StopSignal*>(&stopped));
+    hand_over(this);
+    hand_over(&stopped);
     rtcCommitScene(embree_->scene.get());
-    all_have_read(*this);
+    take_over(this);
+    take_over(&stopped);
     throw_if(stopped); // before Embree's complaint that it was
     embree::check(device);
 }
