@@ -3,6 +3,7 @@
 #include "renderer/core/tensor_file.h"
 #include "renderer/core/text_hash.h"
 
+#include <Imath/half.h>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -25,6 +26,7 @@ template <class T> struct TypeOf;
 template <> struct TypeOf<uint8_t> { static constexpr Type value = Type::u8; };
 template <> struct TypeOf<uint32_t> { static constexpr Type value = Type::u32; };
 template <> struct TypeOf<uint64_t> { static constexpr Type value = Type::u64; };
+template <> struct TypeOf<Imath::half> { static constexpr Type value = Type::f16; };
 template <> struct TypeOf<float> { static constexpr Type value = Type::f32; };
 template <> struct TypeOf<double> { static constexpr Type value = Type::f64; };
 
@@ -151,16 +153,24 @@ class Reader {
     void read_exits() {
         const auto u = list<double>("exit_u"), v = list<double>("exit_v");
         for (const auto& [name, edges] : {std::pair("exit_u", &u), {"exit_v", &v}})
-            if (edges->size() % 2 == 0 || edges->size() < 3 ||
+            if ((edges == &u && edges->size() % 2 == 0) || edges->size() < 2 ||
                 edges->size() > DirectionMesh::kMost + 1)
                 fail(name,
-                     fmt::format("the edges of an even number of bins up to {}",
+                     fmt::format("the edges of {} up to {}",
+                                 edges == &u ? "an even number of columns" : "rows",
                                  DirectionMesh::kMost),
                      fmt::format("{} edges", edges->size()));
         table_.exits =
             DirectionMesh(static_cast<int>(u.size()) - 1, static_cast<int>(v.size()) - 1);
         check_edges("exit_u", u, table_.exits.u_edges());
         check_edges("exit_v", v, table_.exits.v_edges());
+        const auto axes = array<uint8_t>("exit_axis", {2});
+        for (const size_t side : {0, 1}) {
+            if (axes[side] > 1)
+                fail(fmt::format("exit_axis[{}]", side), "0 (warp) or 1 (weft)",
+                     std::to_string(axes[side]));
+            table_.cone_axis[side] = static_cast<ConeAxis>(axes[side]);
+        }
     }
 
     void check_edges(const std::string& name, const std::vector<double>& found,
@@ -237,7 +247,18 @@ class Reader {
     }
 
     std::vector<float> shares(const std::string& name, const Shape& shape) const {
-        std::vector<float> values = array<float>(name, shape);
+        return finite(name, array<float>(name, shape));
+    }
+
+    /// In half or in single precision.
+    std::vector<float> intensities(const std::string& name, const Shape& shape) const {
+        if (has(name) && fields_.at(name).type == Type::f32)
+            return shares(name, shape);
+        const auto halves = array<Imath::half>(name, shape);
+        return finite(name, {halves.begin(), halves.end()});
+    }
+
+    std::vector<float> finite(const std::string& name, std::vector<float> values) const {
         for (size_t i = 0; i < values.size(); ++i)
             if (!(values[i] >= 0 && std::isfinite(values[i])))
                 fail(fmt::format("{}[{}]", name, i), "a finite number >= 0",
@@ -262,7 +283,7 @@ class Reader {
     void read_shares(const std::string& prefix) {
         const size_t directions = table_.directions(), bands = table_.bands.count();
         table_.intensity =
-            shares(prefix + "intensity", {directions, 2, table_.exits.bins(), bands});
+            intensities(prefix + "intensity", {directions, 2, table_.exits.bins(), bands});
         table_.unscattered = shares(prefix + "unscattered", {directions, bands});
         table_.absorbed = shares(prefix + "absorbed", {directions, bands});
         table_.capped = shares(prefix + "capped", {directions, bands});
@@ -292,6 +313,14 @@ class Reader {
     BsdfTable table_;
 };
 
+TensorField intensity_field(const Shape& shape, const std::vector<float>& values) {
+    constexpr float kLargestHalf = 65504;
+    // Written so that what is not a number is written as it is, and refused.
+    if (!std::ranges::all_of(values, [](float value) { return value <= kLargestHalf; }))
+        return TensorField::of<float>(shape, values);
+    return TensorField::of<Imath::half>(shape, {values.begin(), values.end()});
+}
+
 /// `scattering` is laid out as `table` is.
 void add_scattering(TensorFile& fields, const std::string& prefix, const Scattering& scattering,
                     const BsdfTable& table) {
@@ -299,7 +328,8 @@ void add_scattering(TensorFile& fields, const std::string& prefix, const Scatter
     const auto add = [&](const char* name, const Shape& shape, const std::vector<float>& values) {
         fields[prefix + name] = TensorField::of<float>(shape, values);
     };
-    add("intensity", {directions, 2, table.exits.bins(), bands}, scattering.intensity);
+    fields[prefix + "intensity"] =
+        intensity_field({directions, 2, table.exits.bins(), bands}, scattering.intensity);
     add("unscattered", {directions, bands}, scattering.unscattered);
     add("absorbed", {directions, bands}, scattering.absorbed);
     add("capped", {directions, bands}, scattering.capped);
@@ -335,6 +365,8 @@ void write_table(const BsdfTable& table, const std::filesystem::path& path) {
         fields["band_edges_nm"] = TensorField::of<double>({bands + 1}, table.bands.edges_nm);
     fields["exit_u"] = TensorField::of<double>({mesh.u_edges().size()}, mesh.u_edges());
     fields["exit_v"] = TensorField::of<double>({mesh.v_edges().size()}, mesh.v_edges());
+    fields["exit_axis"] = TensorField::of<uint8_t>(
+        {2}, {static_cast<uint8_t>(table.cone_axis[0]), static_cast<uint8_t>(table.cone_axis[1])});
     fields["incident_side"] = TensorField::of<uint8_t>({directions}, side);
     fields["incident_theta"] = TensorField::of<double>({directions}, theta);
     fields["incident_phi"] = TensorField::of<double>({directions}, phi);

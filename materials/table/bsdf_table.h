@@ -3,6 +3,7 @@
 #include "materials/table/direction_mesh.h"
 #include "renderer/core/bands.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -53,6 +54,8 @@ struct Scattering {
 struct BsdfTable : Scattering {
     Bands bands;
     DirectionMesh exits; ///< laid out anew for each direction, see `exits_of`
+    /// Of light that arrives on each side, the yarns about which its exits are charted.
+    std::array<ConeAxis, 2> cone_axis{ConeAxis::warp, ConeAxis::warp};
     std::vector<IncidentDirection> incident;
 
     /// The rectangular grid of incidence behind a full table: axes in radians (ascending; φ starts
@@ -106,8 +109,10 @@ BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> 
 /// `capped`, `lost`, `paths`, `accuracy`, `bin_error`, `realisation_error`, `grid_theta`,
 /// `grid_phi`, `grid_index`), and besides them stand
 /// `incident_side` (0 front, 1 back), `incident_theta`, `incident_phi`, the mesh of exits by
-/// the edges of its bins, `exit_u` and `exit_v` (direction_mesh.h), `band_edges_nm` (absent for
-/// RGB), and as texts `band_names` (a JSON array), `metadata` (a JSON object) and `description`.
+/// the edges of its bins, `exit_u` and `exit_v` (direction_mesh.h), `exit_axis` of either side (0
+/// warp, 1 weft; exit_chart.h), `band_edges_nm` (absent for RGB), and as texts `band_names` (a JSON
+/// array), `metadata` (a JSON object) and `description`. `intensity` is in half precision, whose
+/// rounding is far below any noise, but for a number too large for it: then all are in single.
 /// Angles are in radians, as in the other tables of this container, so that they survive the round
 /// trip bit for bit. `grid_*` are absent from a partial table, `realisation_error` from one of a
 /// single realisation. Where there are colourways, `colourways` has their names (a JSON array), and

@@ -1,35 +1,25 @@
 #include "materials/table/direction_mesh.h"
 
+#include <fmt/format.h>
 #include <stdexcept>
-#include <string>
 
 namespace rapport {
-namespace {
-
-// Of the chart tests/bench/charts/parameterisation.svg.
-constexpr double kFinestColumn = 0.15, kFinestRow = 0.25;
-
-} // namespace
-
-DirectionMesh::Axis::Axis(int count, double finest)
-    : middle(count / 2), half_finest(static_cast<float>(finest / 2)),
-      growth(static_cast<float>(1 - finest)),
-      steps(static_cast<float>(0.5 * count / (1 - finest))) {
-    if (count < 2 || count > kMost || count % 2 != 0)
-        throw std::invalid_argument("DirectionMesh: columns and rows must be even, 2 to " +
-                                    std::to_string(kMost) + ", not " + std::to_string(count));
-    for (int i = 0; i <= count; ++i) {
-        const double t = static_cast<double>(2 * i - count) / count, size = std::abs(t);
-        edges.push_back(std::copysign(finest * size + (1 - finest) * square(size), t));
+DirectionMesh::DirectionMesh(int columns, int rows) : middle_(columns / 2), rows_(rows) {
+    if (columns < 2 || columns > kMost || columns % 2 != 0 || rows < 1 || rows > kMost)
+        throw std::invalid_argument(fmt::format("DirectionMesh: expected an even number of columns "
+                                                "from 2 to {0} and 1 to {0} rows, not {1} and {2}",
+                                                kMost, columns, rows));
+    for (int i = 0; i <= columns; ++i) {
+        const double t = static_cast<double>(2 * i - columns) / columns, size = std::abs(t);
+        u_edges_.push_back(std::copysign(kFinest * size + (1 - kFinest) * square(size), t));
     }
+    for (int i = 0; i <= rows; ++i)
+        v_edges_.push_back(static_cast<double>(2 * i - rows) / rows);
 }
 
-DirectionMesh::DirectionMesh(int columns, int rows)
-    : u_(columns, kFinestColumn), v_(rows, kFinestRow) {}
-
 DirectionMesh::Bounds DirectionMesh::bounds(size_t bin) const {
-    const size_t column = bin / rows(), row = bin % rows();
-    return {u_.edges[column], u_.edges[column + 1], v_.edges[row], v_.edges[row + 1]};
+    const size_t column = bin / rows_, row = bin % rows_;
+    return {u_edges_[column], u_edges_[column + 1], v_edges_[row], v_edges_[row + 1]};
 }
 
 size_t ExitBins::quarter(const glm::dvec3& w) const {

@@ -7,21 +7,21 @@
 namespace rapport {
 
 /// A mesh of exits over the chart of a hemisphere (exit_chart.h): columns across u and rows across
-/// v, so that it moves with the highlights. Its bins are rectangles that do not straddle u = 0 or
-/// v = 0, where the highlights are; from there to the edge their widths grow linearly, by
-/// |u| = k·t + (1 − k)·t² over equal steps of t. Bin numbers run along v within a column.
+/// v, so that it moves with the highlight. Its bins are rectangles that do not straddle u = 0,
+/// where the highlight is; from there to the edge the widths of columns grow linearly, by |u| = k·t
+/// + (1 − k)·t² over equal steps of t. Rows are equal. Bin numbers run along v within a column.
 class DirectionMesh {
   public:
     static constexpr int kMost = 512; ///< columns, and rows
-    /// Even numbers from 2 to kMost; std::invalid_argument for others. The default is the knee of
-    /// tests/bench/charts/parameterisation.svg.
+    /// An even number of columns from 2 to kMost, of rows from 1; std::invalid_argument for others.
+    /// The default is the knee of tests/bench/charts/parameterisation.svg.
     explicit DirectionMesh(int columns = 24, int rows = 16);
 
     size_t bins() const { return static_cast<size_t>(columns()) * rows(); }
-    int columns() const { return 2 * u_.middle; }
-    int rows() const { return 2 * v_.middle; }
-    const std::vector<double>& u_edges() const { return u_.edges; }
-    const std::vector<double>& v_edges() const { return v_.edges; }
+    int columns() const { return 2 * middle_; }
+    int rows() const { return rows_; }
+    const std::vector<double>& u_edges() const { return u_edges_; }
+    const std::vector<double>& v_edges() const { return v_edges_; }
 
     struct Bounds {
         double u_low, u_high, v_low, v_high;
@@ -33,51 +33,43 @@ class DirectionMesh {
         double xi, eta;
     };
     Place place(const ChartPoint& point) const {
-        const size_t column = u_.cell(point.u), row = v_.cell(point.v);
-        return {column * rows() + row, u_.across(column, point.u), v_.across(row, point.v)};
+        const double step =
+            (std::sqrt(square(kFinest / 2) + (1 - kFinest) * std::abs(point.u)) - kFinest / 2) *
+            (middle_ / (1 - kFinest));
+        const int out = std::min(static_cast<int>(step), middle_ - 1);
+        const auto column = static_cast<size_t>(middle_ + (point.u < 0 ? -1 - out : out));
+        const double low = u_edges_[column], high = u_edges_[column + 1];
+        const double down = 0.5 * (point.v + 1) * rows_;
+        const int row = std::clamp(static_cast<int>(down), 0, rows_ - 1);
+        return {column * rows_ + row,
+                std::clamp((2 * point.u - low - high) / (high - low), -1.0, 1.0),
+                std::clamp(2 * (down - row) - 1, -1.0, 1.0)};
     }
     ChartPoint point(const Place& place) const {
-        return {u_.at(place.bin / rows(), place.xi), v_.at(place.bin % rows(), place.eta)};
+        const Bounds b = bounds(place.bin);
+        return {std::lerp(b.u_low, b.u_high, 0.5 * (place.xi + 1)),
+                std::lerp(b.v_low, b.v_high, 0.5 * (place.eta + 1))};
     }
 
     bool operator==(const DirectionMesh&) const = default;
 
-    /// How one coordinate is cut.
-    struct Axis {
-        int middle;                ///< cells to either side of 0
-        float half_finest, growth; ///< k/2, k the finest width over that of equal cells; 1 − k
-        float steps;               ///< middle over 1 − k
-        std::vector<double> edges;
-
-        Axis(int count, double finest);
-        bool operator==(const Axis&) const = default;
-        size_t cell(double x) const {
-            const double half = half_finest;
-            const double step = (std::sqrt(half * half + growth * std::abs(x)) - half) * steps;
-            const int out = std::min(static_cast<int>(step), middle - 1);
-            return static_cast<size_t>(middle + (x < 0 ? -1 - out : out));
-        }
-        /// From −1 to 1 across a cell, and back.
-        double across(size_t cell, double x) const {
-            const double low = edges[cell], high = edges[cell + 1];
-            return std::clamp((2 * x - low - high) / (high - low), -1.0, 1.0);
-        }
-        double at(size_t cell, double across) const {
-            return std::lerp(edges[cell], edges[cell + 1], 0.5 * (across + 1));
-        }
-    };
-    const Axis& u_axis() const { return u_; }
-    const Axis& v_axis() const { return v_; }
+    /// k: the width of the columns at the highlight over that of equal ones.
+    static constexpr double kFinest = 0.15;
 
   private:
-    Axis u_, v_;
+    int middle_; ///< columns to either side of the highlight
+    int rows_;
+    std::vector<double> u_edges_, v_edges_;
 };
 
 /// The bins of the exits of light from one direction. Refers to the mesh.
 class ExitBins {
   public:
-    ExitBins(const DirectionMesh& mesh, const glm::dvec3& towards_light)
-        : mesh_(mesh), chart_(towards_light) {}
+    ExitBins(const DirectionMesh& mesh, const glm::dvec3& towards_light,
+             ConeAxis axis = ConeAxis::warp)
+        : mesh_(mesh), chart_(towards_light, axis) {}
+
+    const ExitChart& chart() const { return chart_; }
 
     /// The bin of the unit vector `w` on its own hemisphere.
     size_t bin(const glm::dvec3& w) const { return mesh_.place(chart_.point(w)).bin; }

@@ -40,32 +40,26 @@ Float4 first_quadrant(Float4 over, Float4 under, const C (&c)[6], Float4 cosine,
 
 } // namespace fast_angles
 
-/// atan2(x, z) over π/2, for z ≥ 0: in [−1, 1], within 2e-6; 0 at the origin.
-inline float fast_quarter_turns(float x, float z) {
-    using namespace fast_angles;
-    const Float4 turn =
-        first_quadrant(four(std::abs(x)), four(z), kAtan, Float4{}, Float4{}) * (1 / kQuarter);
-    return negate_where(four(x) < 0, turn)[0];
-}
-
 /// sin(t·π/2) of each `t` in [−1, 1], within 2e-7.
 inline Float4 fast_sine(Float4 t) { return t * fast_angles::polynomial(fast_angles::kSine, t * t); }
 
-/// The angles of an eye (x, y, z, 0) and a light, z ≥ 0, in one: the eye's θ from the normal,
-/// [0, π/2], within 1e-6; its φ from +x towards +y, [0, 2π], within 2e-6 and 0 at the pole; quarter
-/// turns of the eye and of the light, the same as above to the last bit.
-inline Float4 fast_angles_of(Float4 eye, Float4 light) {
+/// Three angles in one: of an eye (x, y, z, 0), z ≥ 0, its θ from the normal, [0, π/2], within
+/// 1e-6, and its φ from +x towards +y, [0, 2π], within 2e-6 and 0 at the pole; of a light at
+/// `across` and `height` its quarter turns, atan2(across, |height|) over π/2, in [−1, 1], within
+/// 2e-6.
+inline Float4 fast_angles_of(Float4 eye, float across, float height) {
     using namespace fast_angles;
     const auto c = [](int i) { return Float4{kAcos[i], kAtan[i], kAtan[i], kAtan[i]}; };
     const Float4 polynomials[] = {c(0), c(1), c(2), c(3), c(4), c(5)};
     const Float4 cosine = min4(__builtin_shufflevector(eye, eye, 2, 3, 3, 3), Float4{1, 0, 0, 0});
+    const Float4 light = {across, height, 0, 0};
     const Float4 e = abs4(eye), l = abs4(light);
-    const Float4 xx = __builtin_shufflevector(eye, light, 3, 0, 0, 4);
-    const Float4 over = __builtin_shufflevector(e, l, 3, 1, 0, 4);
-    const Float4 under = __builtin_shufflevector(e, l, 3, 0, 2, 6);
+    const Float4 xx = __builtin_shufflevector(eye, light, 3, 0, 4, 3);
+    const Float4 over = __builtin_shufflevector(e, l, 3, 1, 4, 3);
+    const Float4 under = __builtin_shufflevector(e, l, 3, 0, 5, 3);
     const Float4 quadrant =
         first_quadrant(over, under, polynomials, cosine, sqrt4(Float4{1, 0, 0, 0} - cosine)) *
-        Float4{1, 1, 1 / kQuarter, 1 / kQuarter};
+        Float4{1, 1, 1 / kQuarter, 0};
     const Int4 left = xx < 0;
     const Int4 back = __builtin_shufflevector(eye, eye, 3, 1, 3, 3) < 0;
     const Float4 half = negate_where(left, quadrant) + keep_where(left, Float4{0, kHalf, 0, 0});

@@ -61,8 +61,6 @@ std::vector<Exchange> exchanges(const BsdfTable& table, size_t direction,
                                 const std::vector<Places>& cells) {
     const size_t bins = table.exits.bins(), bands = table.bands.count();
     const ExitBins exits = table.exits_of(direction);
-    const IncidentDirection& incident = table.incident[direction];
-    const ExitChart chart(spherical_direction(incident.theta, incident.phi));
     std::vector<double> solid_angle(bins);
     std::vector<Rgb> means(2 * bins, Rgb(0)); // grey: over the bands
     double flux = 0, intensities = 0;
@@ -87,7 +85,7 @@ std::vector<Exchange> exchanges(const BsdfTable& table, size_t direction,
             Exchange& to = found[block * cells.size() + c];
             std::array<size_t, kSteps * kSteps> hit;
             for (size_t i = 0; i < hit.size(); ++i) {
-                const auto place = table.exits.place(chart.point(cells[c][i]));
+                const auto place = table.exits.place(exits.chart().point(cells[c][i]));
                 hit[i] = place.bin;
                 to.mean += planes[place.bin]
                                .at(static_cast<float>(place.xi), static_cast<float>(place.eta))

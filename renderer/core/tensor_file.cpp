@@ -4,6 +4,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/input_file.h"
 
+#include <Imath/half.h>
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -34,6 +35,7 @@ template <> constexpr Type kTypeOf<uint32_t> = Type::u32;
 template <> constexpr Type kTypeOf<int32_t> = Type::i32;
 template <> constexpr Type kTypeOf<uint64_t> = Type::u64;
 template <> constexpr Type kTypeOf<int64_t> = Type::i64;
+template <> constexpr Type kTypeOf<Imath::half> = Type::f16;
 template <> constexpr Type kTypeOf<float> = Type::f32;
 template <> constexpr Type kTypeOf<double> = Type::f64;
 
@@ -171,6 +173,7 @@ RAPPORT_INSTANTIATE(uint32_t)
 RAPPORT_INSTANTIATE(int32_t)
 RAPPORT_INSTANTIATE(uint64_t)
 RAPPORT_INSTANTIATE(int64_t)
+RAPPORT_INSTANTIATE(Imath::half)
 RAPPORT_INSTANTIATE(float)
 RAPPORT_INSTANTIATE(double)
 #undef RAPPORT_INSTANTIATE

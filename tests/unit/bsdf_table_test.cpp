@@ -8,6 +8,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/synthetic_tables.h"
 
+#include <Imath/half.h>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -64,6 +65,12 @@ class BsdfFile : public testing::Test {
     std::filesystem::path folder_, path_;
 };
 
+std::vector<float> in_half_precision(const std::vector<float>& values) {
+    const std::vector<Imath::half> halves(values.begin(), values.end());
+    return {halves.begin(), halves.end()};
+}
+
+/// Of what was written and what is read.
 void expect_equal(const BsdfTable& a, const BsdfTable& b) {
     EXPECT_EQ(a.bands, b.bands);
     EXPECT_EQ(a.exits, b.exits);
@@ -76,7 +83,8 @@ void expect_equal(const BsdfTable& a, const BsdfTable& b) {
     EXPECT_EQ(a.grid_theta, b.grid_theta);
     EXPECT_EQ(a.grid_phi, b.grid_phi);
     EXPECT_EQ(a.grid_index, b.grid_index);
-    EXPECT_EQ(a.intensity, b.intensity);
+    EXPECT_EQ(a.cone_axis, b.cone_axis);
+    EXPECT_EQ(in_half_precision(a.intensity), b.intensity);
     EXPECT_EQ(a.unscattered, b.unscattered);
     EXPECT_EQ(a.absorbed, b.absorbed);
     EXPECT_EQ(a.capped, b.capped);
@@ -176,7 +184,7 @@ TEST_F(BsdfFile, ColourwaysRoundTrip) {
     const BsdfTable read = read_table(path_);
     ASSERT_EQ(read.colourways.size(), 2u);
     for (const char* name : {"", "a / black", "b"})
-        expect_equal(read.in_colourway(name, ""), table.in_colourway(name, ""));
+        expect_equal(table.in_colourway(name, ""), read.in_colourway(name, ""));
     EXPECT_LT(read.in_colourway("a / black", "").reflectance(0)[0], table.reflectance(0)[0]);
     EXPECT_EQ(read.largest_accuracy(), 0.3f);
     EXPECT_EQ(read.in_colourway("", "").largest_accuracy(), 0.1f);
@@ -236,6 +244,24 @@ TEST_F(BsdfFile, HasTheAgreedArrays) {
     EXPECT_EQ(fields.at("description").text().find('\n'), std::string::npos);
 }
 
+TEST_F(BsdfFile, IntensityTooLargeForHalfPrecisionIsKeptInSingle) {
+    BsdfTable table = small_synthetic_table(satin_intensity);
+    table.exits = DirectionMesh(512, 256); // of bins so small that one of them can shine so bright
+    table.intensity.assign(table.directions() * 2 * table.exits.bins() * 3, 0);
+    for (size_t d = 0; d < table.directions(); ++d)
+        for (size_t band = 0; band < 3; ++band) {
+            const size_t bin = table.exits.bins() / 2;
+            table.at(d, 0, bin, band) =
+                static_cast<float>(0.75 / table.exits_of(d).solid_angle(bin));
+            table.unscattered[d * 3 + band] = 0.25;
+            table.absorbed[d * 3 + band] = 0;
+        }
+    EXPECT_GT(std::ranges::max(table.intensity), 65504);
+    write_table(table, path_);
+    EXPECT_EQ(read_tensor_file(path_).at("intensity").type, TensorField::Type::f32);
+    EXPECT_EQ(read_table(path_).intensity, table.intensity);
+}
+
 TEST_F(BsdfFile, IgnoresFieldsOfOthers) {
     const FileError error = error_after(
         [](TensorFile& fields) { fields["ndf"] = TensorField::of<float>({1}, {1.0f}); });
@@ -264,18 +290,21 @@ TEST_F(BsdfFile, NamesTheFieldOfWrongTypeOrShape) {
 
 TEST_F(BsdfFile, NamesTheBadValue) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_EQ(error_after_setting<float>("intensity", 7, nan).place, "intensity[7]");
-    EXPECT_EQ(error_after_setting<float>("intensity", 7, -0.1f).place, "intensity[7]");
+    EXPECT_EQ(error_after_setting<Imath::half>("intensity", 7, Imath::half(nan)).place,
+              "intensity[7]");
+    EXPECT_EQ(error_after_setting<Imath::half>("intensity", 7, Imath::half(-0.1f)).place,
+              "intensity[7]");
     EXPECT_EQ(error_after_setting<float>("absorbed", 3, 0.9f).place, "intensity[1]"); // sum ≠ 1
     EXPECT_EQ(error_after_setting<float>("accuracy", 0, nan).place, "accuracy[0]");
     EXPECT_EQ(error_after_setting<double>("exit_u", 2, 0.2).place, "exit_u[2]");
     EXPECT_EQ(error_after_setting<double>("exit_v", 0, nan).place, "exit_v[0]");
-    for (const uint64_t edges : {uint64_t{1}, uint64_t{6}, uint64_t{1001}})
-        EXPECT_EQ(error_after([&](TensorFile& fields) {
-                      fields["exit_v"] =
-                          TensorField::of<double>({edges}, std::vector<double>(edges));
+    EXPECT_EQ(error_after_setting<uint8_t>("exit_axis", 1, 2).place, "exit_axis[1]");
+    for (const auto& [name, edges] :
+         {std::pair("exit_v", 1u), {"exit_v", 1001u}, {"exit_u", 2u}, {"exit_u", 1001u}})
+        EXPECT_EQ(error_after([&, name = name, edges = edges](TensorFile& fields) {
+                      fields[name] = TensorField::of<double>({edges}, std::vector<double>(edges));
                   }).place,
-                  "exit_v");
+                  name);
     EXPECT_EQ(error_after_setting<double>("incident_theta", 1, 1.6).place, "incident_theta[1]");
     EXPECT_EQ(error_after_setting<double>("incident_phi", 1, HUGE_VAL).place, "incident_phi[1]");
     EXPECT_EQ(error_after_setting<uint8_t>("incident_side", 1, 2).place, "incident_side[1]");

@@ -7,6 +7,7 @@
 #include "tests/support/temporary_folder.h"
 #include "vgsp/goniophotometer.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -74,9 +75,8 @@ TEST_F(Checkpointed, RunsThatAreInterruptedEndWithTheSameNumbers) {
     std::filesystem::remove(folder_ / "table.part");
     const int all = increments_;
     ASSERT_GE(all, 3);
-    // Batches are of 1024 paths, and paths are added to a plan up to a batch's end: one direction's
-    // were.
-    ASSERT_EQ(uninterrupted.paths[1] % 1024, 0);
+    // Batches are of 1024 paths, and paths are added to a plan up to a batch's end: some were.
+    ASSERT_TRUE(std::ranges::any_of(uninterrupted.paths, [](auto n) { return n % 1024 == 0; }));
     // Resumed time and again, with other threads, each run doing one increment only.
     int runs = 0;
     for (bool done = false; !done; ++runs) {

@@ -11,7 +11,7 @@ namespace {
 const glm::dvec3 kLight = spherical_direction(radians(52.0), radians(205.0));
 
 TEST(DirectionMesh, CoversTheHemisphereExactly) {
-    for (const auto& [columns, rows] : {std::pair(2, 2), {6, 4}, {24, 12}, {80, 512}})
+    for (const auto& [columns, rows] : {std::pair(2, 2), {6, 1}, {24, 13}, {80, 512}})
         for (const glm::dvec3& light : {kLight, glm::dvec3(0, 0, 1)}) {
             const DirectionMesh mesh(columns, rows);
             const ExitBins exits(mesh, light);
@@ -22,7 +22,7 @@ TEST(DirectionMesh, CoversTheHemisphereExactly) {
         }
 }
 
-TEST(DirectionMesh, IsFinestAtTheHighlightsAndSymmetric) {
+TEST(DirectionMesh, IsFinestAtTheHighlightAndSymmetric) {
     const DirectionMesh mesh;
     ASSERT_EQ(mesh.bins(), static_cast<size_t>(mesh.columns() * mesh.rows()));
     for (const std::vector<double>* edges : {&mesh.u_edges(), &mesh.v_edges()}) {
@@ -31,9 +31,10 @@ TEST(DirectionMesh, IsFinestAtTheHighlightsAndSymmetric) {
         EXPECT_EQ(edges->at(n / 2), 0);
         for (size_t i = 0; i <= n; ++i)
             EXPECT_EQ(edges->at(i), -edges->at(n - i));
-        for (size_t i = n / 2 + 1; i < n; ++i)
-            EXPECT_GT(edges->at(i + 1) - edges->at(i), edges->at(i) - edges->at(i - 1));
     }
+    const std::vector<double>& u = mesh.u_edges();
+    for (size_t i = u.size() / 2 + 1; i + 1 < u.size(); ++i)
+        EXPECT_GT(u[i + 1] - u[i], u[i] - u[i - 1]);
 }
 
 TEST(DirectionMesh, FindsEachBinFromItsInsideInBothPrecisions) {
@@ -81,15 +82,16 @@ TEST(DirectionMesh, EndsOfTheDomainHaveABin) {
 
 TEST(DirectionMesh, RefusesOddOrTooMany) {
     EXPECT_THROW(DirectionMesh(0, 4), std::invalid_argument);
-    EXPECT_THROW(DirectionMesh(4, 3), std::invalid_argument);
+    EXPECT_THROW(DirectionMesh(3, 4), std::invalid_argument);
+    EXPECT_THROW(DirectionMesh(4, 0), std::invalid_argument);
     EXPECT_THROW(DirectionMesh(-2, 4), std::invalid_argument);
     EXPECT_THROW(DirectionMesh(4, DirectionMesh::kMost + 2), std::invalid_argument);
 }
 
 TEST(DirectionMesh, QuartersAreOfEqualSolidAngleAndInTheirBin) {
     // Uniform directions: a quarter each of those in a bin, four sigma.
-    const DirectionMesh mesh(6, 4);
-    const ExitBins exits(mesh, kLight);
+    const DirectionMesh mesh(6, 5);
+    const ExitBins exits(mesh, kLight, ConeAxis::weft);
     CounterRng rng(1, Purpose::test, 0, 0);
     std::vector<int> counts(4 * mesh.bins());
     constexpr int kDirections = 200'000;

@@ -6,7 +6,6 @@
 #include "vgsp/colour_solver.h"
 #include "vgsp/measure_cloth.h"
 
-#include <chrono>
 #include <gtest/gtest.h>
 
 namespace rapport {
@@ -249,6 +248,24 @@ TEST(MeasureCloth, AColourwaysColoursAreSolvedAsItsOwn) {
         FAIL() << "a black that no dye gives was accepted";
     } catch (const FileError& error) {
         EXPECT_EQ(error.place, "colourway.pale.weft.color");
+    }
+}
+
+TEST(MeasureCloth, ChartsExitsAboutTheYarnsThatASideShows) {
+    const auto charted = [](const Draft& draft, uint64_t seed) {
+        Cloth cloth = thin_cloth();
+        cloth.draft = draft;
+        cloth.warp.width_um = cloth.weft.width_um = 120;
+        MeasureOptions options = coarse_options();
+        options.goniophotometer.seed = seed;
+        return measure_cloth(cloth, options).table.cone_axis;
+    };
+    using Axes = std::array<ConeAxis, 2>;
+    const Draft weft_satin = draft_from_rows({"10000", "00100", "00001", "01000", "00010"});
+    for (const uint64_t seed : {0, 1, 2}) {
+        EXPECT_EQ(charted(named_weave("plain"), seed), (Axes{ConeAxis::warp, ConeAxis::warp}));
+        EXPECT_EQ(charted(named_weave("satin 5/2"), seed), (Axes{ConeAxis::warp, ConeAxis::weft}));
+        EXPECT_EQ(charted(weft_satin, seed), (Axes{ConeAxis::weft, ConeAxis::warp}));
     }
 }
 
