@@ -25,7 +25,7 @@ constexpr size_t kSide = 48;                ///< nodes a side of the warped squa
 /// From here on half as long a step of θ: the exits of the table move fastest.
 constexpr double kGrazing = 70 * kPi / 180;
 /// The table keeps its exits in place beyond its last θ; without a node at the horizon the file's
-/// would sink below it with the mirror direction.
+/// would sink below it with the highlight.
 constexpr double kLastTheta = 89.99 * kPi / 180;
 
 /// Dominant wavelengths of the sRGB primaries under an equal-energy white [nm].

@@ -162,7 +162,7 @@ inline PackedTable::EyeAndLight PackedTable::prepare(const glm::vec3& eye,
     Float4 e = load_xyz(&eye.x);
     e = max4(e, e * Float4{1, 1, -1, 1});
     if (e[2] < least_cosine_) {
-        // Beyond the last θ the chart stays where it is: to follow the mirror direction down to the
+        // Beyond the last θ the chart stays where it is: to follow the highlight down to the
         // horizon would heap up the light before it.
         e *= sqrt4(four((1 - square(least_cosine_)) / ((1 - e[2]) * (1 + e[2]))));
         e[2] = least_cosine_;
