@@ -1,5 +1,6 @@
 #include "materials/ggx.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 #include "materials/ggx.h"
 #include "renderer/core/fresnel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 

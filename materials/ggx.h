@@ -2,6 +2,7 @@
 
 #include "materials/bsdf.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace rapport {

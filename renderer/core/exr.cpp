@@ -16,6 +16,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfVersion.h>
+#include <algorithm>
 #include <fmt/format.h>
 #include <stdexcept>
 

@@ -2,6 +2,8 @@
 
 #include "renderer/core/math.h"
 
+#include <algorithm>
+
 // The equal-area octahedral map between the unit square and the sphere (Clarberg 2008, "Fast
 // Equal-Area Mapping of the (Hemi)Sphere using SIMD"), in the orientation of pbrt-v4's square
 // image lights: the centre of the square is +z, its corners are −z, and its x and y follow the

@@ -3,6 +3,7 @@
 #include "renderer/core/image.h"
 #include "renderer/core/srgb.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <new>

@@ -3,6 +3,7 @@
 #include "renderer/core/parallel.h"
 #include "renderer/core/rng.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "renderer/kernel/fibres.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <stdexcept>

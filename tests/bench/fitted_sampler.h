@@ -3,6 +3,7 @@
 #include "materials/bsdf.h"
 #include "renderer/core/rng.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace rapport::tests {

@@ -3,6 +3,7 @@
 #include "renderer/scene/mesh/mesh_cleaning.h"
 #include "renderer/scene/mesh/subdivision.h"
 
+#include <algorithm>
 #include <functional>
 #include <gtest/gtest.h>
 #include <random>

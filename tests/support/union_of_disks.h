@@ -3,6 +3,7 @@
 #include "renderer/core/fresnel.h"
 #include "renderer/core/rng.h"
 
+#include <algorithm>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>

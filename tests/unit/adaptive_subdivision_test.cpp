@@ -8,6 +8,8 @@
 #include "tests/support/gltf_models.h"
 #include "tests/support/long_run.h"
 
+#include <algorithm>
+
 // Faces that are cut as finely as they are seen, creases, and quads.
 
 namespace rapport {

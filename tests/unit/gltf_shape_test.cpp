@@ -7,6 +7,8 @@
 #include "tests/support/gltf_models.h"
 #include "tests/support/shared_data.h"
 
+#include <algorithm>
+
 // What a glTF shape is asked for: frames along the file's tangents, and how a cloth is strained.
 
 namespace rapport {

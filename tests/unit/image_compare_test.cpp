@@ -2,6 +2,7 @@
 #include "renderer/core/rng.h"
 #include "tests/support/long_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>

@@ -14,6 +14,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>

@@ -7,6 +7,7 @@
 #include "tests/support/measured_files.h"
 #include "tests/support/temporary_folder.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <limits>
 

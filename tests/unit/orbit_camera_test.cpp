@@ -5,6 +5,7 @@
 #include "renderer/scene/pbrt/pbrt_parser.h"
 #include "tests/support/file_bytes.h"
 
+#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include "renderer/core/sobol.h"
 #include "tests/support/statistics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>

@@ -2,6 +2,7 @@
 
 #include "renderer/core/rng.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <vector>

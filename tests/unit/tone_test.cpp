@@ -2,6 +2,7 @@
 #include "renderer/integrator/streaks.h"
 #include "renderer/preview/tone.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>

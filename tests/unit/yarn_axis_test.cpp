@@ -1,6 +1,7 @@
 #include "renderer/core/math.h"
 #include "vgsp/yarn_axis.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace rapport {

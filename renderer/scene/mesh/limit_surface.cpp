@@ -2,6 +2,7 @@
 
 #include "renderer/scene/mesh/local_uvs.h"
 
+#include <algorithm>
 #include <mutex>
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/bfr/surface.h>

@@ -2,6 +2,7 @@
 
 #include "renderer/core/error.h"
 
+#include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
 #include <map>

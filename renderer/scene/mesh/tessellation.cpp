@@ -2,6 +2,8 @@
 
 #include "renderer/scene/mesh/face_pattern.h"
 
+#include <algorithm>
+
 namespace rapport {
 namespace {
 
