@@ -206,7 +206,8 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
     for (const kernel::FibreChain& chain : element.fibres.chains)
         element.segments += chain.points.size();
     element.memory = checked_memory(double(element.segments), "", element, cloth, ends, picks);
-    const std::vector<kernel::FibreSegment> segments = kernel::fibre_segments(element.fibres);
+    const std::vector<kernel::FibreSegment> segments =
+        kernel::fibre_segments(element.fibres, options.stopped);
     element.overlap_fraction = overlap_fraction(element.fibres, segments, options.stopped);
     element.mass_g_per_m2 = mass_of(element.fibres, segments, cloth);
     element.warp_cover = 2 * warp.mean_half_width() / warp.spacing;

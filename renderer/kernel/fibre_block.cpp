@@ -171,7 +171,7 @@ struct Callbacks {
 };
 
 FibreBlock::FibreBlock(const FibreAssembly& assembly, const StopSignal& stopped)
-    : cell_(assembly.cell), segments_(fibre_segments(assembly)),
+    : cell_(assembly.cell), segments_(fibre_segments(assembly, stopped)),
       embree_(std::make_unique<Embree>()) {
     if (segments_.empty())
         throw std::invalid_argument("an assembly without fibres");
@@ -181,8 +181,7 @@ FibreBlock::FibreBlock(const FibreAssembly& assembly, const StopSignal& stopped)
             to_shift(std::round(chain.period.x / cell_.x), std::round(chain.period.y / cell_.y)));
     }
     measure_extent();
-    throw_if(stopped);
-    fill();
+    fill(stopped);
     const RTCDevice device = embree_->device.get();
     const embree::Geometry geometry = embree::make_geometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(copies_.size()));
@@ -231,11 +230,14 @@ template <class Visit> void FibreBlock::each_copy(Visit visit) const {
     }
 }
 
-void FibreBlock::fill() {
+void FibreBlock::fill(const StopSignal& stopped) {
+    constexpr size_t kAskEvery = 4096;
     size_t count = 0;
     each_copy([&](uint32_t, Shift) { ++count; });
     copies_.reserve(count); // exactly: they are most of the memory
     each_copy([&](uint32_t s, Shift shift) {
+        if (copies_.size() % kAskEvery == 0)
+            throw_if(stopped);
         const FibreSegment& segment = segments_[s];
         copies_.push_back({glm::vec3(segment.start + offset(shift)),
                            static_cast<float>(square(segment.radius)), glm::vec3(segment.direction),

@@ -65,7 +65,7 @@ class FibreBlock {
 
     void measure_extent();
     template <class Visit> void each_copy(Visit visit) const;
-    void fill();
+    void fill(const StopSignal& stopped);
     bool same_fibre(uint32_t segment_a, Shift a, uint32_t segment_b, Shift b) const;
 
     glm::dvec2 cell_;

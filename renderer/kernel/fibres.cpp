@@ -48,7 +48,7 @@ bool mitres_cross(const FibreSegment& s) {
 
 } // namespace
 
-std::vector<FibreSegment> fibre_segments(const FibreAssembly& assembly) {
+std::vector<FibreSegment> fibre_segments(const FibreAssembly& assembly, const StopSignal& stopped) {
     if (!(assembly.cell.x > 0 && assembly.cell.y > 0))
         throw std::invalid_argument("the cell of a fibre assembly has no area");
     size_t total = 0;
@@ -58,6 +58,7 @@ std::vector<FibreSegment> fibre_segments(const FibreAssembly& assembly) {
     std::vector<FibreSegment> segments;
     segments.reserve(total);
     for (size_t c = 0; c < assembly.chains.size(); ++c) {
+        throw_if(stopped);
         check_chain(assembly, c);
         const FibreChain& chain = assembly.chains[c];
         const uint32_t first = uint32_t(segments.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "renderer/core/math.h"
+#include "renderer/core/stop_signal.h"
 
 #include <cstdint>
 #include <vector>
@@ -38,7 +39,9 @@ struct FibreSegment {
 };
 
 /// The chain's cylinders in order. Throws std::invalid_argument for coincident points, a radius
-/// that is not positive, or a period that is no whole number of cells.
-std::vector<FibreSegment> fibre_segments(const FibreAssembly& assembly);
+/// that is not positive, or a period that is no whole number of cells, and Stopped when told to
+/// stop, before one of the chains.
+std::vector<FibreSegment> fibre_segments(const FibreAssembly& assembly,
+                                         const StopSignal& stopped = {});
 
 } // namespace rapport::kernel

@@ -86,6 +86,16 @@ std::filesystem::path first_cloth(const Session& session) {
     return {};
 }
 
+/// Whether the key of a capital letter has just been pressed. From 1.87 on Dear ImGui has names of
+/// its own for all keys.
+bool went_down(char letter) {
+#if IMGUI_VERSION_NUM >= 18700
+    return ImGui::IsKeyPressed(static_cast<ImGuiKey>(ImGuiKey_A + (letter - 'A')), false);
+#else
+    return ImGui::IsKeyPressed(letter, false);
+#endif
+}
+
 /// The window and what is drawn in it.
 class View {
   public:
@@ -125,9 +135,9 @@ class View {
     void take_keys() {
         if (ImGui::GetIO().WantTextInput)
             return;
-        if (ImGui::IsKeyPressed('F', false))
+        if (went_down('F'))
             session_.frame_all();
-        if (ImGui::IsKeyPressed('S', false))
+        if (went_down('S'))
             session_.save_shown();
     }
 
