@@ -29,4 +29,4 @@ if [[ ${1:-} == long ]]; then
   export RAPPORT_LONG=1
 fi
 build tests
-exec ctest --preset tests
+exec ctest --preset tests ${RAPPORT_LONG:+--timeout 7200}

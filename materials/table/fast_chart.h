@@ -12,9 +12,7 @@ namespace rapport {
 class FastChart {
   public:
     /// About an eye of this coordinate along the axis.
-    explicit FastChart(float along)
-        : ridge_(clamp4(four(-along), -kFarthest, kFarthest)[0]), below_(1 / (1 + ridge_)),
-          above_(1 / (1 - ridge_)) {}
+    explicit FastChart(float along) : ridge_(clamp4(four(-along), -kFarthest, kFarthest)[0]) {}
 
     struct Point {
         Float4 uv;
@@ -23,14 +21,14 @@ class FastChart {
     /// Of a unit vector by its coordinate along the axis and its quarter turns round it, on its own
     /// hemisphere; beyond ±1 by rounding.
     Point point(float along, float quarter_turns) const {
-        const float beside = along - ridge_, inverse = beside < 0 ? below_ : above_;
+        const float beside = along - ridge_, inverse = 1 / length(beside);
         return {Float4{beside * inverse, quarter_turns, 0, 0}, kDensity * inverse};
     }
-    float density(Float4 uv) const { return kDensity * (uv[0] < 0 ? below_ : above_); }
+    float density(Float4 uv) const { return kDensity / length(uv[0]); }
 
     /// The unit vector at (u, v), on the hemisphere of +z: across the axis, along it, and z.
     glm::vec3 direction(Float4 uv) const {
-        const float along = ridge_ + uv[0] * (1 + (uv[0] < 0 ? ridge_ : -ridge_));
+        const float along = ridge_ + uv[0] * length(uv[0]);
         const Float4 sines = fast_sine(Float4{uv[1], 1 - std::abs(uv[1])});
         const float across = sqrt4(max4(four((1 - along) * (1 + along)), Float4{}))[0];
         return {across * sines[0], along, across * sines[1]};
@@ -39,7 +37,12 @@ class FastChart {
   private:
     static constexpr float kFarthest = ExitChart::kFarthest;
     static constexpr auto kDensity = static_cast<float>(2 / kPi);
-    float ridge_, below_, above_; ///< the latter 1 over the lengths of the sides
+
+    /// Of the side of the ridge that a number of this sign lies on; without a branch, which every
+    /// second direction would take.
+    float length(float beside) const { return 1 - std::copysign(1.0f, beside) * ridge_; }
+
+    float ridge_;
 };
 
 /// As DirectionMesh.
@@ -64,7 +67,8 @@ class FastMesh {
         constexpr auto kGrowth = static_cast<float>(1 - DirectionMesh::kFinest);
         const float u = uv[0], root = sqrt4(four(kHalf * kHalf + kGrowth * std::abs(u)))[0];
         const int out = std::min(static_cast<int>((root - kHalf) * steps_), middle_ - 1);
-        const auto column = static_cast<uint32_t>(middle_ + (u < 0 ? ~out : out));
+        const int below = std::bit_cast<int32_t>(u) >> 31; // all bits: ~out is −1 − out
+        const auto column = static_cast<uint32_t>(middle_ + (out ^ below));
         const float down = std::max(0.5f * static_cast<float>(rows_) * (uv[1] + 1), 0.0f);
         const int row = std::min(static_cast<int>(down), rows_ - 1);
         const Column& cut = columns_[column];

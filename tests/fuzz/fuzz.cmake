@@ -25,5 +25,5 @@ foreach(file ${files})
   add_test(NAME fuzz/${corpus} COMMAND ${name} -max_total_time=${RAPPORT_FUZZ_SECONDS}
     -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1
     -artifact_prefix=${corpora}/${corpus}- ${corpora}/${corpus})
-  set_tests_properties(fuzz/${corpus} PROPERTIES LABELS fuzz FIXTURES_REQUIRED seeds TIMEOUT 1200)
+  set_tests_properties(fuzz/${corpus} PROPERTIES LABELS fuzz FIXTURES_REQUIRED seeds)
 endforeach()
