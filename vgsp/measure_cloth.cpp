@@ -20,31 +20,6 @@ uint64_t realisation_seed(uint64_t seed, int realisation) {
     return high << 32 | random.bits();
 }
 
-/// Of each side the yarns whose highlight it shows: those of which more is seen from straight
-/// above, and the warp where both are seen about equally, whatever the seed.
-std::array<ConeAxis, 2> facing_yarns(const kernel::FibreTracer& tracer) {
-    constexpr int kRays = 64; // along each edge of the cell
-    constexpr double kClearlyMore = 1.2;
-    std::array<ConeAxis, 2> facing{};
-    for (const size_t side : {0, 1}) {
-        const double height = side == 0 ? tracer.z_max() + 1 : tracer.z_min() - 1;
-        const glm::dvec3 down(0, 0, side == 0 ? -1 : 1);
-        std::array<int, 2> seen{};
-        for (int i = 0; i < kRays * kRays; ++i) {
-            const glm::dvec2 at((i % kRays + 0.5) / kRays, (i / kRays + 0.5) / kRays);
-            const kernel::FibreTracer::Entry entry = tracer.enter(
-                glm::dvec3(at * tracer.cell(), height), down, kernel::FibreTracer::kNone);
-            if (entry.flight != kernel::FibreTracer::Flight::enters)
-                continue;
-            const glm::dvec3 along = tracer.segments()[entry.point.segment].direction;
-            ++seen[std::abs(along.x) > std::abs(along.y) ? 1 : 0];
-        }
-        if (seen[1] > kClearlyMore * seen[0])
-            facing[side] = ConeAxis::weft;
-    }
-    return facing;
-}
-
 /// Turns dyes into absorption.
 class Dyer {
   public:
@@ -129,6 +104,29 @@ std::map<std::string, std::string> metadata(const Cloth& cloth, const MicroEleme
 }
 
 } // namespace
+
+std::array<ConeAxis, 2> facing_yarns(const kernel::FibreTracer& tracer) {
+    constexpr int kRays = 64; // along each edge of the cell
+    constexpr double kClearlyMore = 1.2;
+    std::array<ConeAxis, 2> facing{};
+    for (const size_t side : {0, 1}) {
+        const double height = side == 0 ? tracer.z_max() + 1 : tracer.z_min() - 1;
+        const glm::dvec3 down(0, 0, side == 0 ? -1 : 1);
+        std::array<int, 2> seen{};
+        for (int i = 0; i < kRays * kRays; ++i) {
+            const glm::dvec2 at((i % kRays + 0.5) / kRays, (i / kRays + 0.5) / kRays);
+            const kernel::FibreTracer::Entry entry = tracer.enter(
+                glm::dvec3(at * tracer.cell(), height), down, kernel::FibreTracer::kNone);
+            if (entry.flight != kernel::FibreTracer::Flight::enters)
+                continue;
+            const glm::dvec3 along = tracer.segments()[entry.point.segment].direction;
+            ++seen[std::abs(along.x) > std::abs(along.y) ? 1 : 0];
+        }
+        if (seen[1] > kClearlyMore * seen[0])
+            facing[side] = ConeAxis::weft;
+    }
+    return facing;
+}
 
 ClothOptics cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
                          const GoniophotometerSettings& settings) {

@@ -5,6 +5,7 @@
 #include "vgsp/goniophotometer.h"
 #include "vgsp/micro_element.h"
 
+#include <array>
 #include <functional>
 
 namespace rapport {
@@ -43,6 +44,11 @@ struct ClothOptics {
     std::vector<FibreOptics> fibres;
     Colourways colourways;
 };
+
+/// Of each side the yarns whose highlight it shows, about which its exits are charted: those of
+/// which more is seen from straight above, and the warp where both are seen about equally, whatever
+/// the seed.
+std::array<ConeAxis, 2> facing_yarns(const kernel::FibreTracer& tracer);
 
 /// Wanted colours become absorption, solved for in the cloth's own micro-element by one trace for
 /// all of them. FileError (at the cloth's path) for a colour out of reach.

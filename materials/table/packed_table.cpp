@@ -78,7 +78,7 @@ inline size_t PackedTable::Axis::interval(uint32_t step, float x) const {
     return i;
 }
 
-PackedTable::PackedTable(const BsdfTable& table)
+PackedTable::PackedTable(const BsdfTable& table, const StopSignal& stopped)
     : exits_(table.exits), mesh_(table.exits), theta_(table.grid_theta),
       phi_(closed_circle(table.grid_phi)), starts_{theta_.intervals[0].start,
                                                    phi_.intervals[0].start, 0, 0},
@@ -96,8 +96,10 @@ PackedTable::PackedTable(const BsdfTable& table)
     const std::vector<Rgb> band_rgb = table.bands.to_rgb();
     for (const size_t side : {0, 1})
         for (size_t theta = 0; theta < thetas_; ++theta)
-            for (size_t phi = 0; phi < phis_; ++phi)
+            for (size_t phi = 0; phi < phis_; ++phi) {
+                throw_if(stopped);
                 add_node(table, side, theta, phi, band_rgb);
+            }
 }
 
 void PackedTable::add_node(const BsdfTable& table, size_t side, size_t theta, size_t phi,

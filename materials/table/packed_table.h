@@ -2,6 +2,7 @@
 
 #include "materials/table/bsdf_table.h"
 #include "materials/table/fast_chart.h"
+#include "renderer/core/stop_signal.h"
 
 #include <array>
 #include <optional>
@@ -18,8 +19,9 @@ namespace rapport {
 /// that rounding makes no sample heavier than another.
 class PackedTable {
   public:
-    /// Of a table whose grid is whole on both sides. Bands become linear RGB.
-    explicit PackedTable(const BsdfTable& table);
+    /// Of a table whose grid is whole on both sides. Bands become linear RGB. Throws Stopped when
+    /// told to stop, before one of the nodes.
+    explicit PackedTable(const BsdfTable& table, const StopSignal& stopped = {});
 
     // The members of TableBsdf, of directions off the horizon.
 

@@ -4,7 +4,8 @@
 
 namespace rapport {
 
-TableBsdf::TableBsdf(BsdfTable table, const std::string& name) : table_(std::move(table)) {
+TableBsdf::TableBsdf(BsdfTable table, const std::string& name, const StopSignal& stopped)
+    : table_(std::move(table)) {
     if (table_.partial())
         throw FileError(name, "", "a table of the whole grid of incidence",
                         "a partial table of " + std::to_string(table_.directions()) +
@@ -14,7 +15,7 @@ TableBsdf::TableBsdf(BsdfTable table, const std::string& name) : table_(std::mov
         if (table_.grid_index[side * side_size] == BsdfTable::kAbsent)
             throw FileError(name, "", "a table of both sides of the cloth",
                             side == 0 ? "no front side" : "no back side");
-    packed_ = std::make_unique<const PackedTable>(table_);
+    packed_ = std::make_unique<const PackedTable>(table_, stopped);
 }
 
 TableBsdf::~TableBsdf() = default;

@@ -15,8 +15,9 @@ namespace rapport {
 /// measured for. Directions are in the local frame of the cloth.
 class TableBsdf {
   public:
-    /// FileError(`name` for the message) for a partial table, or one that lacks a side.
-    TableBsdf(BsdfTable table, const std::string& name);
+    /// FileError(`name` for the message) for a partial table, or one that lacks a side. Throws
+    /// Stopped when told to stop.
+    TableBsdf(BsdfTable table, const std::string& name, const StopSignal& stopped = {});
     ~TableBsdf();
 
     Rgb eval(const glm::vec3& eye, const glm::vec3& light) const;

@@ -18,13 +18,14 @@ std::shared_ptr<const Cloth> read(const std::filesystem::path& file) {
 }
 
 /// `name` is for messages.
-ClothTable ready(BsdfTable table, std::shared_ptr<const Cloth> cloth, const std::string& name) {
+ClothTable ready(BsdfTable table, std::shared_ptr<const Cloth> cloth, const std::string& name,
+                 const StopSignal& stopped = {}) {
     ClothTable made;
     made.cloth = std::move(cloth);
     made.accuracy = table.largest_accuracy();
     const auto dye = [&](const std::string& colourway) {
         made.dyed[colourway] =
-            std::make_shared<const TableBsdf>(table.in_colourway(colourway, name), name);
+            std::make_shared<const TableBsdf>(table.in_colourway(colourway, name), name, stopped);
     };
     dye("");
     for (const auto& [colourway, scattering] : table.colourways)
@@ -33,8 +34,9 @@ ClothTable ready(BsdfTable table, std::shared_ptr<const Cloth> cloth, const std:
     return made;
 }
 
-ClothTable ready(const RisingMeasurement& measurement, const std::filesystem::path& file) {
-    ClothTable made = ready(measurement.table(), measurement.cloth(), file.string());
+ClothTable ready(const RisingMeasurement& measurement, const std::filesystem::path& file,
+                 const StopSignal& stopped = {}) {
+    ClothTable made = ready(measurement.table(), measurement.cloth(), file.string(), stopped);
     made.swatch = measurement.swatch();
     return made;
 }
@@ -153,7 +155,7 @@ bool ClothWorker::advance(Task& task, const StopSignal& stopped) {
                       measurement.paths() >= kMostPaths;
     if (done || measurement.paths() >= 2 * task.told_paths) {
         task.told_paths = measurement.paths();
-        tell_of(ready(measurement, task.file));
+        tell_of(ready(measurement, task.file, stopped));
     }
     return !done;
 }
