@@ -14,8 +14,9 @@ rapport=build/release/rapport
 "$rapport" vgsp scenes/cloths/quickstart.toml -o "$out/satin.bsdf" --accuracy "$accuracy"
 "$rapport" render scenes/quickstart.pbrt -o "$out/garment.exr" -o "$out/garment.png"
 
-reached=$("$rapport" info --json "$out/satin.bsdf" | grep -om1 '"accuracy":[^,]*' | cut -d: -f2)
-reached=$(printf '%.2f' $reached)
+report=$("$rapport" info --json "$out/satin.bsdf")
+reached=${report#*'"accuracy":'}
+reached=$(printf '%.2f' "${reached%%,*}")
 cat <<TEXT
 
 The cloth, of accuracy $reached where $accuracy was asked:
