@@ -181,7 +181,7 @@ measure_cloth(const Cloth& cloth, const MeasureOptions& options,
                             std::move(realisations.first),
                             static_cast<int>(realisations.tracers.size()),
                             {}};
-    result.table.cone_axis = facing_yarns(realisations.tracers[0]);
+    result.table.exit_axis = facing_yarns(realisations.tracers[0]);
     const ClothOptics optics = cloth_optics(cloth, realisations.tracers[0], settings);
     result.table.metadata =
         metadata(cloth, result.element, geometry, optics, result.realisations, settings);

@@ -169,7 +169,7 @@ class Reader {
             if (axes[side] > 1)
                 fail(fmt::format("exit_axis[{}]", side), "0 (warp) or 1 (weft)",
                      std::to_string(axes[side]));
-            table_.cone_axis[side] = static_cast<ConeAxis>(axes[side]);
+            table_.exit_axis[side] = static_cast<ConeAxis>(axes[side]);
         }
     }
 
@@ -314,9 +314,8 @@ class Reader {
 };
 
 TensorField intensity_field(const Shape& shape, const std::vector<float>& values) {
-    constexpr float kLargestHalf = 65504;
     // Written so that what is not a number is written as it is, and refused.
-    if (!std::ranges::all_of(values, [](float value) { return value <= kLargestHalf; }))
+    if (!std::ranges::all_of(values, [](float value) { return value <= HALF_MAX; }))
         return TensorField::of<float>(shape, values);
     return TensorField::of<Imath::half>(shape, {values.begin(), values.end()});
 }
@@ -366,7 +365,7 @@ void write_table(const BsdfTable& table, const std::filesystem::path& path) {
     fields["exit_u"] = TensorField::of<double>({mesh.u_edges().size()}, mesh.u_edges());
     fields["exit_v"] = TensorField::of<double>({mesh.v_edges().size()}, mesh.v_edges());
     fields["exit_axis"] = TensorField::of<uint8_t>(
-        {2}, {static_cast<uint8_t>(table.cone_axis[0]), static_cast<uint8_t>(table.cone_axis[1])});
+        {2}, {static_cast<uint8_t>(table.exit_axis[0]), static_cast<uint8_t>(table.exit_axis[1])});
     fields["incident_side"] = TensorField::of<uint8_t>({directions}, side);
     fields["incident_theta"] = TensorField::of<double>({directions}, theta);
     fields["incident_phi"] = TensorField::of<double>({directions}, phi);

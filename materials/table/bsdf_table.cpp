@@ -65,7 +65,7 @@ float BsdfTable::at(size_t direction, int block, size_t bin, size_t band) const 
 ExitBins BsdfTable::exits_of(size_t direction) const {
     const IncidentDirection& from = incident[direction];
     return {exits, spherical_direction(from.theta, from.phi),
-            cone_axis[static_cast<size_t>(from.side)]};
+            exit_axis[static_cast<size_t>(from.side)]};
 }
 
 std::vector<double> BsdfTable::reflectance(size_t direction) const {

@@ -55,7 +55,7 @@ struct BsdfTable : Scattering {
     Bands bands;
     DirectionMesh exits; ///< laid out anew for each direction, see `exits_of`
     /// Of light that arrives on each side, the yarns about which its exits are charted.
-    std::array<ConeAxis, 2> cone_axis{ConeAxis::warp, ConeAxis::warp};
+    std::array<ConeAxis, 2> exit_axis{ConeAxis::warp, ConeAxis::warp};
     std::vector<IncidentDirection> incident;
 
     /// The rectangular grid of incidence behind a full table: axes in radians (ascending; φ starts

@@ -11,27 +11,33 @@ namespace rapport {
 /// As ExitChart.
 class FastChart {
   public:
-    /// About an eye of this coordinate along the axis.
-    explicit FastChart(float along) : ridge_(clamp4(four(-along), -kFarthest, kFarthest)[0]) {}
+    FastChart(Float4 eye, ConeAxis axis)
+        : about_weft_(axis == ConeAxis::weft),
+          ridge_(clamp4(four(-along(eye)), -kFarthest, kFarthest)[0]) {}
+
+    /// Of a vector (x, y, z, …) the coordinates along the yarns and across them.
+    float along(Float4 w) const { return about_weft_ ? w[0] : w[1]; }
+    float across(Float4 w) const { return about_weft_ ? w[1] : w[0]; }
 
     struct Point {
         Float4 uv;
         float density; ///< area of (u, v) per solid angle [1/sr]
     };
-    /// Of a unit vector by its coordinate along the axis and its quarter turns round it, on its own
-    /// hemisphere; beyond ±1 by rounding.
-    Point point(float along, float quarter_turns) const {
-        const float beside = along - ridge_, inverse = 1 / length(beside);
+    /// Of a unit vector and its quarter turns round the yarns, on its own hemisphere; beyond ±1 by
+    /// rounding.
+    Point point(Float4 w, float quarter_turns) const {
+        const float beside = along(w) - ridge_, inverse = 1 / length(beside);
         return {Float4{beside * inverse, quarter_turns, 0, 0}, kDensity * inverse};
     }
     float density(Float4 uv) const { return kDensity / length(uv[0]); }
 
-    /// The unit vector at (u, v), on the hemisphere of +z: across the axis, along it, and z.
+    /// The unit vector at (u, v), on the hemisphere of +z.
     glm::vec3 direction(Float4 uv) const {
         const float along = ridge_ + uv[0] * length(uv[0]);
         const Float4 sines = fast_sine(Float4{uv[1], 1 - std::abs(uv[1])});
-        const float across = sqrt4(max4(four((1 - along) * (1 + along)), Float4{}))[0];
-        return {across * sines[0], along, across * sines[1]};
+        const float radius = sqrt4(max4(four((1 - along) * (1 + along)), Float4{}))[0];
+        const float across = radius * sines[0], z = radius * sines[1];
+        return about_weft_ ? glm::vec3(along, across, z) : glm::vec3(across, along, z);
     }
 
   private:
@@ -42,6 +48,7 @@ class FastChart {
     /// second direction would take.
     float length(float beside) const { return 1 - std::copysign(1.0f, beside) * ridge_; }
 
+    bool about_weft_;
     float ridge_;
 };
 

@@ -85,12 +85,12 @@ PackedTable::PackedTable(const BsdfTable& table, const StopSignal& stopped)
       steps_{theta_.steps, phi_.steps, 0, 0}, last_{theta_.guide.size() - 0.5f,
                                                     phi_.guide.size() - 0.5f, 0, 0},
       least_cosine_(static_cast<float>(std::cos(table.grid_theta.back()))),
-      about_weft_{table.cone_axis[0] == ConeAxis::weft, table.cone_axis[1] == ConeAxis::weft},
-      thetas_(table.grid_theta.size()), phis_(table.grid_phi.size()), side_nodes_(thetas_ * phis_),
-      nodes_(2 * side_nodes_), rows_(exits_.rows()), block_bins_(exits_.bins()),
-      bins_(2 * exits_.bins() * nodes_ + 1), scale_(nodes_ + 1), reflected_(nodes_ + 1),
-      transmitted_(nodes_ + 1), albedo_(nodes_ + 1), unscattered_(nodes_ + 1),
-      column_lines_(Line::lines(exits_.columns())), row_lines_(Line::lines(exits_.rows())),
+      exit_axis_(table.exit_axis), thetas_(table.grid_theta.size()), phis_(table.grid_phi.size()),
+      side_nodes_(thetas_ * phis_), nodes_(2 * side_nodes_), rows_(exits_.rows()),
+      block_bins_(exits_.bins()), bins_(2 * exits_.bins() * nodes_ + 1), scale_(nodes_ + 1),
+      reflected_(nodes_ + 1), transmitted_(nodes_ + 1), albedo_(nodes_ + 1),
+      unscattered_(nodes_ + 1), column_lines_(Line::lines(exits_.columns())),
+      row_lines_(Line::lines(exits_.rows())),
       cumulative_lines_(column_lines_ + exits_.columns() * row_lines_),
       cumulative_(2 * nodes_ * cumulative_lines_) {
     const std::vector<Rgb> band_rgb = table.bands.to_rgb();
@@ -170,8 +170,9 @@ inline PackedTable::EyeAndLight PackedTable::prepare(const glm::vec3& eye,
         e[2] = least_cosine_;
     }
     const size_t side = eye.z > 0 ? 0 : 1;
-    const bool about_weft = about_weft_[side];
-    const Float4 angles = fast_angles_of(e, about_weft ? light.y : light.x, light.z);
+    const FastChart chart(e, exit_axis_[side]);
+    const Float4 l = load_xyz(&light.x);
+    const Float4 angles = fast_angles_of(e, chart.across(l), light.z);
     const Float4 steps = max4(min4((angles - starts_) * steps_, last_), Float4{});
     const Int4 step = __builtin_convertvector(steps, Int4);
     const size_t t = theta_.interval(step[0], angles[0]), p = phi_.interval(step[1], angles[1]);
@@ -181,12 +182,11 @@ inline PackedTable::EyeAndLight PackedTable::prepare(const glm::vec3& eye,
     const Float4 after = clamp4((angles - starts) * per_length, 0, 1), before = 1 - after;
     const size_t next = p + 1 == phis_ ? 0 : p + 1;
     const size_t at = side * side_nodes_ + t;
-    const FastChart chart(about_weft ? e[0] : e[1]);
     return {{at + p * thetas_, at + next * thetas_,
              __builtin_shufflevector(before, after, 0, 4, 0, 4) *
                  __builtin_shufflevector(before, after, 1, 1, 5, 5),
-             chart, about_weft},
-            chart.point(about_weft ? light.x : light.y, angles[2])};
+             chart},
+            chart.point(l, angles[2])};
 }
 
 /// Of the mean albedo, that of each node.
@@ -292,8 +292,6 @@ std::optional<PackedTable::Sample> PackedTable::sample(const glm::vec3& eye, flo
         return std::nullopt;
     const Float4 w = c * (3 * albedo / sum);
     glm::vec3 light = prepared.chart.direction(uv);
-    if (prepared.about_weft)
-        std::swap(light.x, light.y);
     // On the horizon it would lose its side.
     light.z = std::max(light.z, 1e-7f);
     light.z = std::copysign(light.z, (block == 0) == (eye.z > 0) ? 1.0f : -1.0f);

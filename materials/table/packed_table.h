@@ -64,7 +64,6 @@ class PackedTable {
         size_t first, second; ///< nodes at φ before and after, at θ before; θ after follows each
         Float4 weight;        ///< of first, first + 1, second, second + 1; their sum is 1
         FastChart chart;
-        bool about_weft; ///< the chart is
 
         size_t node(size_t k) const { return (k < 2 ? first : second) + k % 2; }
     };
@@ -93,9 +92,9 @@ class PackedTable {
     DirectionMesh exits_;
     FastMesh mesh_;
     Axis theta_, phi_;
-    Float4 starts_, steps_, last_;   ///< of the guides of both
-    float least_cosine_;             ///< of the last θ
-    std::array<bool, 2> about_weft_; ///< by side: its exits are charted about the weft
+    Float4 starts_, steps_, last_; ///< of the guides of both
+    float least_cosine_;           ///< of the last θ
+    std::array<ConeAxis, 2> exit_axis_;
     /// Nodes are those of the whole grid, [side][φ][θ], with those at θ = 0 repeated for each φ.
     /// One more is kept at the end of all, since look-ups read two at a time.
     size_t thetas_, phis_, side_nodes_, nodes_, rows_, block_bins_;

@@ -69,7 +69,7 @@ void RisingMeasurement::advance(const StopSignal& stopped, const MeasuringWatch&
         bench_ = set_up(hasty, settings);
     settings.seed = static_cast<uint64_t>(rounds_);
     BsdfTable table = make_full_table(cloth_->bands, true, true);
-    table.cone_axis = facing_yarns(*bench_->tracer);
+    table.exit_axis = facing_yarns(*bench_->tracer);
     measure(*bench_->tracer, bench_->optics.fibres, settings, table, watch, {},
             bench_->optics.colourways);
     if (rounds_ <= 1)

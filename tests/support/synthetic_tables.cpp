@@ -51,6 +51,7 @@ void fill_table(BsdfTable& table, const Intensity& intensity, double unscattered
 
 BsdfTable synthetic_table(const Intensity& intensity, double unscattered) {
     BsdfTable table = make_full_table(Bands{}, true, true);
+    table.exit_axis = {ConeAxis::warp, ConeAxis::weft};
     fill_table(table, intensity, unscattered);
     return table;
 }
@@ -72,6 +73,7 @@ BsdfTable small_synthetic_table(const Intensity& intensity, double unscattered,
     table.grid_phi = phis;
     table.grid_index = grid_index;
     table.exits = DirectionMesh(12, 8);
+    table.exit_axis = {ConeAxis::warp, ConeAxis::weft};
     table.intensity.resize(table.directions() * 2 * table.exits.bins() * table.bands.count());
     fill_table(table, intensity, unscattered);
     return table;

@@ -83,7 +83,7 @@ void expect_equal(const BsdfTable& a, const BsdfTable& b) {
     EXPECT_EQ(a.grid_theta, b.grid_theta);
     EXPECT_EQ(a.grid_phi, b.grid_phi);
     EXPECT_EQ(a.grid_index, b.grid_index);
-    EXPECT_EQ(a.cone_axis, b.cone_axis);
+    EXPECT_EQ(a.exit_axis, b.exit_axis);
     EXPECT_EQ(in_half_precision(a.intensity), b.intensity);
     EXPECT_EQ(a.unscattered, b.unscattered);
     EXPECT_EQ(a.absorbed, b.absorbed);

@@ -32,6 +32,14 @@ TEST(DirectionMesh, IsFinestAtTheHighlightAndSymmetric) {
         for (size_t i = 0; i <= n; ++i)
             EXPECT_EQ(edges->at(i), -edges->at(n - i));
     }
+    // What the README says of the bins, of light along the normal: round the yarns, across their
+    // highlight, and at the horizon.
+    const auto degrees = [](double low, double high) {
+        return (std::asin(high) - std::asin(low)) * 180 / kPi;
+    };
+    EXPECT_NEAR(180.0 / mesh.rows(), 11, 0.5);
+    EXPECT_NEAR(degrees(0, mesh.u_edges()[mesh.columns() / 2 + 1]), 1, 0.1);
+    EXPECT_NEAR(degrees(mesh.u_edges()[mesh.columns() - 1], 1), 32, 0.5);
     const std::vector<double>& u = mesh.u_edges();
     for (size_t i = u.size() / 2 + 1; i + 1 < u.size(); ++i)
         EXPECT_GT(u[i + 1] - u[i], u[i] - u[i - 1]);

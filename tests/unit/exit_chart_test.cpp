@@ -76,19 +76,22 @@ TEST(FastAngles, AreThoseOfTheLibrary) {
 }
 
 Float4 fast_point(const FastChart& chart, const glm::vec3& w) {
-    return chart.point(w.y, fast_angles_of(Float4{0, 0, 1, 0}, w.x, w.z)[2]).uv;
+    const Float4 vector = load_xyz(&w.x);
+    return chart.point(vector, fast_angles_of(Float4{0, 0, 1, 0}, chart.across(vector), w.z)[2]).uv;
 }
 
 TEST(FastChart, AgreesWithTheExact) {
     CounterRng rng(4, Purpose::test, 0, 0);
     for (int i = 0; i < 10000; ++i) {
         const glm::dvec3 light = random_direction(rng), w = random_direction(rng);
-        const ExitChart exact(light);
-        const FastChart fast(static_cast<float>(light.y));
+        const ConeAxis axis = i % 2 ? ConeAxis::warp : ConeAxis::weft;
+        const ExitChart exact(light, axis);
+        const FastChart fast(Float4{float(light.x), float(light.y), float(light.z), 0}, axis);
         const ChartPoint p = exact.point(w);
         const Float4 q = fast_point(fast, glm::vec3(w));
         // At the ends of the axes a hemisphere is thin across the chart.
-        const double thin = 1e-5 / (1 - std::max(std::abs(light.y), std::abs(w.y)));
+        const double thin =
+            1e-5 / (1 - std::max(std::abs(along(light, axis)), std::abs(along(w, axis))));
         ASSERT_NEAR(q[0], p.u, thin);
         ASSERT_NEAR(q[1], p.v, 2.5e-6);
         const glm::dvec3 back(fast.direction(q));
@@ -103,13 +106,14 @@ TEST(FastChart, AgreesWithTheExact) {
 TEST(FastChart, EndsOfTheAxesAreSafe) {
     for (const glm::vec3 light :
          {glm::vec3(0, 1, 0), {0, -1, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {-1, 0, 1e-30f}})
-        for (const glm::vec3 w : {glm::vec3(0, 1, 0), {0, -1, 0}, {1, 0, 0}, {0, 0, 1}}) {
-            const FastChart chart(light.y);
-            const Float4 p = fast_point(chart, w);
-            EXPECT_LE(std::max(std::abs(p[0]), std::abs(p[1])), 1 + 1e-5f);
-            EXPECT_GT(chart.density(p), 0);
-            EXPECT_NEAR(glm::length(chart.direction(p)), 1, 1e-6);
-        }
+        for (const glm::vec3 w : {glm::vec3(0, 1, 0), {0, -1, 0}, {1, 0, 0}, {0, 0, 1}})
+            for (const ConeAxis axis : {ConeAxis::warp, ConeAxis::weft}) {
+                const FastChart chart(load_xyz(&light.x), axis);
+                const Float4 p = fast_point(chart, w);
+                EXPECT_LE(std::max(std::abs(p[0]), std::abs(p[1])), 1 + 1e-5f);
+                EXPECT_GT(chart.density(p), 0);
+                EXPECT_NEAR(glm::length(chart.direction(p)), 1, 1e-6);
+            }
 }
 
 } // namespace

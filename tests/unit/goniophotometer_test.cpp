@@ -258,7 +258,7 @@ TEST(MeasureCloth, ChartsExitsAboutTheYarnsThatASideShows) {
         cloth.warp.width_um = cloth.weft.width_um = 120;
         MeasureOptions options = coarse_options();
         options.goniophotometer.seed = seed;
-        return measure_cloth(cloth, options).table.cone_axis;
+        return measure_cloth(cloth, options).table.exit_axis;
     };
     using Axes = std::array<ConeAxis, 2>;
     const Draft weft_satin = draft_from_rows({"10000", "00100", "00001", "01000", "00010"});

@@ -154,7 +154,8 @@ TEST(TableBsdf, IntegralsAreAlbedoAndOne) {
     for (const glm::vec3& eye : eyes()) {
         // Beyond the last node the chart stands still.
         const double theta = std::min(std::acos(double(std::abs(eye.z))), radians(88.0));
-        const ExitBins exits(mesh, spherical_direction(theta, azimuth(glm::dvec3(eye))));
+        const ExitBins exits(mesh, spherical_direction(theta, azimuth(glm::dvec3(eye))),
+                             bsdf.table().exit_axis[eye.z > 0 ? 0 : 1]);
         const Rgb albedo = bsdf.albedo(eye);
         glm::dvec3 scattered(0), density(0);
         for (const Side side : {Side::front, Side::back})
@@ -196,7 +197,7 @@ TEST(TableBsdf, HighlightsMoveBetweenNodesInsteadOfDoubling) {
         };
         const auto charted = [&](ConeAxis about) {
             BsdfTable table = make_full_table(Bands{}, true, true);
-            table.cone_axis = {about, about};
+            table.exit_axis = {about, about};
             tests::fill_table(table, ridge, 0);
             return TableBsdf(std::move(table), "");
         };
