@@ -96,8 +96,8 @@ struct BsdfTable : Scattering {
 ///
 /// The grid of a full table: θ = 0°, 10°, …, 80°, 88° and φ every 15°, 217 directions a side. The
 /// time to measure is proportional to their number: accuracy ε takes 4π·Σ E[w²]/Ω / E[w]² / ε²
-/// paths a direction (bins of solid angle Ω, path weights w): about 2000/ε² for a plain weave, 3
-/// times that for a satin, whose light falls into the narrow bins about the highlight.
+/// paths a direction (bins of solid angle Ω, path weights w): about 1600/ε² for a plain weave,
+/// 2.3 times that for a satin, whose light falls into the narrow bins about the highlight.
 BsdfTable make_full_table(const Bands& bands, bool front, bool back);
 BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> incident);
 

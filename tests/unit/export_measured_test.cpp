@@ -65,8 +65,10 @@ TEST(ExportMeasured, KeepsTheEnergyAndTellsWhatItLost) {
     EXPECT_TRUE(is_measured_file(folder / "a.bsdf"));
     EXPECT_NEAR(losses.unscattered, 0.05, 1e-6);
     EXPECT_NEAR(losses.transmitted, 0.3 * kPi * (0.25 + 0.1 + 0.05) / 3, 1e-3);
-    EXPECT_NEAR(losses.back_transmitted, losses.transmitted, 1e-9);
-    EXPECT_NEAR(losses.back_reflected, losses.kept, 1e-9);
+    // The cloth is alike on both sides; its table, about the warp on one and the weft on the other,
+    // has other bins that the streak is integrated over.
+    EXPECT_NEAR(losses.back_transmitted, losses.transmitted, 1e-4);
+    EXPECT_NEAR(losses.back_reflected, losses.kept, 1e-4);
     EXPECT_GT(losses.kept, 0.1);
     std::printf("%.1f MB: resolution %.4f, albedo within %.4f\n",
                 1e-6 * double(std::filesystem::file_size(folder / "a.bsdf")), losses.resolution,
