@@ -9,6 +9,10 @@ namespace rapport {
 namespace {
 
 constexpr int kRouletteDepth = 3; ///< scattering events before Russian roulette
+/// Directions of lights that one is picked from at a vertex. Seconds × variance of the dress in
+/// satin and plain weave under two photographed skies (tests/bench/sampling_bench.cpp), in the
+/// geometric mean, is 0.77, 0.70, 0.67 and 0.71 of that of one direction, for 2, 3, 4 and 6.
+constexpr int kCandidates = 4;
 /// Shadow rays stop short of the light by this share of their length.
 constexpr float kShadowShare = 1 - 1e-4f;
 
@@ -67,32 +71,76 @@ float chance_to_pass(float through, float scattered) {
     return through > 0 ? through / (through + scattered) : 0;
 }
 
-/// Light scattered towards the eye out of one sampled direction of one sampled light. The path will
-/// look for the same by the BSDF with probability `chance`.
-Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& frame,
-                 const FoldedBsdf& bsdf, float chance, Sampler& sampler) {
-    const auto choice = scene.choose_light(sampler.next_1d());
-    if (!choice)
-        return Rgb(0);
-    const auto light = choice->light->sample(point.position, sampler.next_2d());
+/// What a sampled direction of a sampled light adds if nothing stands between, weighted against
+/// finding it by the BSDF.
+struct Candidate {
+    Rgb light{0};
+    glm::vec3 direction{0};
+    float distance = 0;
+};
+
+Candidate light_candidate(const Scene::LightChoice& choice, int of, const SurfacePoint& point,
+                          const Frame& frame, const FoldedBsdf& bsdf, float chance,
+                          const glm::vec2& u) {
+    const auto light = choice.light->sample(point.position, u);
     if (!light)
-        return Rgb(0);
+        return {};
     const glm::vec3 local = frame.to_local(light->direction);
     if (!sides_agree(point, light->direction, local))
-        return Rgb(0);
+        return {};
     const auto [scattered, pdf] = bsdf.eval_and_pdf(local);
-    if (scattered == Rgb(0))
-        return Rgb(0);
-    const glm::vec3 origin = offset_origin(point, light->direction);
-    const float distance = light->distance - glm::dot(origin - point.position, light->direction);
-    const Rgb passed = scene.transmittance(origin, light->direction, distance * kShadowShare);
-    if (passed == Rgb(0))
-        return Rgb(0);
-    const Rgb arriving = scattered * point.reflectance() * passed * light->radiance;
+    const Rgb arriving = scattered * point.reflectance() * light->radiance;
     if (light->delta)
-        return arriving / choice->probability;
-    const float density = choice->probability * light->pdf;
-    return arriving * (balance(density, chance * pdf) / density);
+        return {arriving / choice.probability, light->direction, light->distance};
+    const float density = choice.probability * light->pdf;
+    const float weight = balance(static_cast<float>(of) * density, chance * pdf);
+    return {arriving * (weight / density), light->direction, light->distance};
+}
+
+/// Light scattered towards the eye out of one of some sampled directions of the lights, picked in
+/// proportion to what it adds if nothing stands between (resampled importance sampling: Talbot et
+/// al. 2005): to ask the table is cheaper than to trace a ray. The path will look for the same by
+/// the BSDF with probability `chance`.
+///
+/// The candidates are one point of every stratum of the lights' shares and a shifted lattice (R2)
+/// in the space of directions; each is as likely as if it were alone, which is all that is needed.
+Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& frame,
+                 const FoldedBsdf& bsdf, float chance, Sampler& sampler) {
+    const auto first = scene.choose_light(0);
+    if (!first)
+        return Rgb(0);
+    const bool alike = first->probability == 1 && first->light->is_delta();
+    const int count = alike ? 1 : kCandidates;
+    const float place_in_stratum = sampler.next_1d();
+    const glm::vec2 shift = sampler.next_2d();
+    const glm::vec2 step(0.7548776662f, 0.5698402910f);
+    float pick = sampler.next_1d();
+    Candidate picked;
+    float total = 0, of_picked = 0;
+    for (int i = 0; i < count; ++i) {
+        const auto number = static_cast<float>(i);
+        const auto choice =
+            scene.choose_light((number + place_in_stratum) / static_cast<float>(count));
+        const Candidate candidate = light_candidate(*choice, count, point, frame, bsdf, chance,
+                                                    glm::fract(shift + number * step));
+        const float weight = mean(candidate.light);
+        if (!(weight > 0))
+            continue;
+        total += weight;
+        const float share = weight / total; // one number picks: what is left of it is even again
+        if (pick < share) {
+            picked = candidate;
+            of_picked = weight;
+            pick /= share;
+        } else
+            pick = (pick - share) / (1 - share);
+    }
+    if (total == 0)
+        return Rgb(0);
+    const glm::vec3 origin = offset_origin(point, picked.direction);
+    const float distance = picked.distance - glm::dot(origin - point.position, picked.direction);
+    const Rgb passed = scene.transmittance(origin, picked.direction, distance * kShadowShare);
+    return picked.light * passed * (total / (of_picked * static_cast<float>(count)));
 }
 
 Rgb escaped_radiance(const Scene& scene, const glm::vec3& direction, const Scattering& last) {
@@ -101,7 +149,8 @@ Rgb escaped_radiance(const Scene& scene, const glm::vec3& direction, const Scatt
         const Rgb escaped = light->escaped(direction);
         if (escaped == Rgb(0))
             continue;
-        radiance += escaped * balance(last.pdf, probability * light->escaped_pdf(direction));
+        radiance +=
+            escaped * balance(last.pdf, kCandidates * probability * light->escaped_pdf(direction));
     }
     return radiance;
 }
@@ -114,7 +163,7 @@ Rgb emitted_radiance(const Scene& scene, const SurfacePoint& point, const glm::v
     const Rgb emitted = light->emitted(point.geometric_normal, -direction);
     if (emitted == Rgb(0) || last.pdf == kOnlyWay)
         return emitted;
-    const float density = scene.choice_probability(*light) *
+    const float density = kCandidates * scene.choice_probability(*light) *
                           light->pdf(point.position - last.position, point.geometric_normal);
     return emitted * balance(last.pdf, density);
 }

@@ -16,11 +16,11 @@ struct PathResult {
 /// Follows one camera path against the light.
 ///
 /// At each vertex, light reaches the eye by three ways that share nothing: emission; scattering,
-/// estimated by one light sample and by one BSDF sample that are weighted against each other
-/// (Veach 1997, balance heuristic); and the unscattered beam. The last is a null interaction: the
-/// path goes straight on and the vertex leaves no trace in it, so that an emitter behind cloth is
-/// weighted by the densities at the last scattering vertex, just as a shadow ray weights it that
-/// goes through the same cloth (Scene::transmittance).
+/// estimated by one direction of the lights, picked from some (Talbot et al. 2005), and by one BSDF
+/// sample that are weighted against each other (Veach 1997, balance heuristic); and the unscattered
+/// beam. The last is a null interaction: the path goes straight on and the vertex leaves no trace
+/// in it, so that an emitter behind cloth is weighted by the densities at the last scattering
+/// vertex, just as a shadow ray weights it that goes through the same cloth (Scene::transmittance).
 ///
 /// `max_depth` counts scattering events, as in pbrt: 0 shows emission only, 1 adds direct light.
 PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler);

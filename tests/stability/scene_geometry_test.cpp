@@ -193,11 +193,11 @@ TEST(HotPixel, AmongAMillionIsSampledByItsLight) {
     const Picture picture = white_ground(sky);
     EXPECT_NEAR(picture.mean(), radiance, 4 * picture.error() + 1e-3 * radiance);
     // Flat cells sample the tent of the hot pixel with E[w²] = 1.444² (in each dimension, ¾ of the
-    // light lies in the middle cell, where E[w²] is 28/27, and ¼ in those beside it, 8/3). It has
-    // 0.49 of all light and makes 0.74 of the radiance; the even rest, 0.26 of it, is sampled over
-    // the sphere with E[w²] = 8/3: 0.74²/0.49 · 2.09 + 0.26²/0.51 · 8/3 − 1 = 1.69 per sample.
+    // light lies in the middle cell, where E[w²] is 28/27, and ¼ in those beside it, 8/3). It makes
+    // 0.74 of the radiance; the even rest is below the mean and left to the BSDF, which finds it
+    // without noise: 0.74² · (2.09 − 1) = 0.60 per candidate, of which a sample has four.
     const double noise = std::sqrt(picture.mean("variance.G")) / picture.mean();
-    EXPECT_LT(noise, 1.02 * std::sqrt(1.69 / 64));
+    EXPECT_LT(noise, std::sqrt(0.60 / 4 / 64));
     const Picture even = white_ground(sky_with_hot_pixel(kSize, kSize, 0, 1));
     EXPECT_NEAR(even.mean(), 1, 4 * even.error() + 1e-3);
 }

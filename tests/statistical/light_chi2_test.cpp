@@ -76,7 +76,7 @@ std::filesystem::path test_image(const tests::TemporaryFolder& folder, int width
             for (size_t c = 0; c < 3; ++c)
                 image.data[c][static_cast<size_t>(y * width + x)] =
                     x < width / 3 ? 0
-                                  : (x == width / 2 && y == height / 3 ? 40.0f : 0.3f) +
+                                  : (x == width / 2 && y == height / 3 ? 4.0f : 0.3f) +
                                         static_cast<float>(y) / static_cast<float>(height);
     const std::filesystem::path path = folder / ("sky" + std::to_string(width) + ".exr");
     write_exr(image, path);

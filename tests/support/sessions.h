@@ -68,8 +68,9 @@ class SquareScene {
     TemporaryFolder folder_;
 };
 
-/// Ticks as a window does until `done`, or fails after so many seconds.
-inline bool tick_until(Session& session, const std::function<bool()>& done, double seconds = 20) {
+/// Ticks as a window does until `done`; fails after so many seconds, which the sanitizers on a busy
+/// machine do not need.
+inline bool tick_until(Session& session, const std::function<bool()>& done, double seconds = 300) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     while (std::chrono::steady_clock::now() < until) {
         session.tick();

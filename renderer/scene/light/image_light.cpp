@@ -69,22 +69,36 @@ void ImageLight::read_pixels(const LightContext& context, const std::filesystem:
                                                 file.string(), negative, pixels_.size()));
 }
 
-/// A cell's weight is the flux through it: solid angle × the mean luminance of the bilinear
-/// lookup over the cell, which is [1 6 1]/8 × [1 6 1]/8 over the neighbours. It is positive
-/// wherever the lookup is.
+/// The mean luminance of the bilinear lookup over a pixel's cell: [1 6 1]/8 × [1 6 1]/8 over the
+/// neighbours. It is positive wherever the lookup is.
+double ImageLight::mean_luminance(int x, int y) const {
+    static constexpr double kMean[] = {1 / 8., 6 / 8., 1 / 8.};
+    double mean = 0;
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+            mean += kMean[dx + 1] * kMean[dy + 1] * luminance(pixel(x + dx, y + dy));
+    return mean;
+}
+
+/// A cell's weight is its solid angle × what its luminance is above the sky's mean. Directions
+/// drawn from the BSDF, which the samples are weighted against, are already in proportion to what
+/// an even sky contributes; samples are for what stands out of it (MIS compensation: Karlík et al.
+/// 2019, "MIS compensation: optimizing sampling techniques in multiple importance sampling").
 void ImageLight::prepare_sampling() {
-    static constexpr float kMean[] = {1 / 8.f, 6 / 8.f, 1 / 8.f};
-    std::vector<float> weights(pixels_.size());
+    std::vector<double> luminances(pixels_.size()), solid_angles(pixels_.size());
+    double flux = 0, sphere = 0;
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) {
-            float mean = 0;
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dx = -1; dx <= 1; ++dx)
-                    mean += kMean[dx + 1] * kMean[dy + 1] * luminance(pixel(x + dx, y + dy));
-            const glm::dvec2 centre((x + 0.5) / width_, (y + 0.5) / height_);
-            weights[static_cast<size_t>(y) * width_ + x] =
-                mean * static_cast<float>(solid_angle(centre));
+            const size_t i = static_cast<size_t>(y) * width_ + x;
+            luminances[i] = mean_luminance(x, y);
+            solid_angles[i] = solid_angle({(x + 0.5) / width_, (y + 0.5) / height_});
+            flux += luminances[i] * solid_angles[i];
+            sphere += solid_angles[i];
         }
+    std::vector<float> weights(pixels_.size());
+    for (size_t i = 0; i < weights.size(); ++i)
+        weights[i] =
+            static_cast<float>(std::max(luminances[i] - flux / sphere, 0.0) * solid_angles[i]);
     distribution_.emplace(weights, width_, height_);
 }
 

@@ -6,10 +6,11 @@
 
 namespace rapport {
 
-/// Light from all around by an image of radiance, +z up, looked up bilinearly and sampled by its
-/// luminance. A square image is pbrt's equal-area octahedral map. An image twice as wide as high
-/// is a latitude–longitude map: the zenith is its top row, its middle column looks along +x, and
-/// what stands to the right in the image stands to the right as seen from inside.
+/// Light from all around by an image of radiance, +z up, looked up bilinearly and sampled where its
+/// luminance is above the mean, by how much it is; what is below is for BSDF samples to find. A
+/// square image is pbrt's equal-area octahedral map. An image twice as wide as high is a
+/// latitude–longitude map: the zenith is its top row, its middle column looks along +x, and what
+/// stands to the right in the image stands to the right as seen from inside.
 class ImageLight final : public Light {
   public:
     /// "string filename" and "float scale". FileError if the file is no such image, a pixel is
@@ -32,6 +33,7 @@ class ImageLight final : public Light {
     double solid_angle(const glm::dvec2& position) const;
 
     void read_pixels(const LightContext& context, const std::filesystem::path& file);
+    double mean_luminance(int x, int y) const;
     void prepare_sampling();
     Rgb pixel(int x, int y) const; ///< at most one step outside the image
     Rgb lookup(const glm::dvec2& position) const;
