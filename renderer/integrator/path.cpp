@@ -13,8 +13,6 @@ constexpr int kRouletteDepth = 3; ///< scattering events before Russian roulette
 /// satin and plain weave under two photographed skies (tests/bench/sampling_bench.cpp), in the
 /// geometric mean, is 0.77, 0.70, 0.67 and 0.71 of that of one direction, for 2, 3, 4 and 6.
 constexpr int kCandidates = 4;
-/// Shadow rays stop short of the light by this share of their length.
-constexpr float kShadowShare = 1 - 1e-4f;
 
 float mean(const Rgb& c) { return (c.r + c.g + c.b) * (1 / 3.0f); }
 
@@ -38,24 +36,6 @@ bool sides_agree(const SurfacePoint& point, const glm::vec3& world, const glm::v
     return glm::dot(world, point.geometric_normal) * local.z > 0;
 }
 
-/// The shading frame, or, where the eye sees by the geometry one side and by the shading normal
-/// the other, as on silhouettes, the frame of the geometric normal.
-Frame frame_for(const SurfacePoint& point, const glm::vec3& eye) {
-    const Frame& shading = point.frame;
-    if (glm::dot(eye, shading.z) * glm::dot(eye, point.geometric_normal) > 0)
-        return shading;
-    const glm::vec3 z = point.geometric_normal;
-    const glm::vec3 y = shading.y - glm::dot(shading.y, z) * z;
-    const float length = glm::length(y);
-    if (!(length > 1e-6f))
-        return Frame::about(z);
-    Frame frame;
-    frame.z = z;
-    frame.y = y / length;
-    frame.x = glm::cross(frame.y, frame.z);
-    return frame;
-}
-
 /// Russian roulette: whether a path goes on, then weighted for those that do not.
 bool survives(Rgb& throughput, Sampler& sampler) {
     const float survival = std::min(1.0f, std::max({throughput.r, throughput.g, throughput.b}));
@@ -74,7 +54,8 @@ float chance_to_pass(float through, float scattered) {
 /// What a sampled direction of a sampled light adds if nothing stands between, weighted against
 /// finding it by the BSDF.
 struct Candidate {
-    Rgb light{0};
+    Rgb added{0};
+    const Light* light = nullptr;
     glm::vec3 direction{0};
     float distance = 0;
 };
@@ -91,10 +72,20 @@ Candidate light_candidate(const Scene::LightChoice& choice, int of, const Surfac
     const auto [scattered, pdf] = bsdf.eval_and_pdf(local);
     const Rgb arriving = scattered * point.reflectance() * light->radiance;
     if (light->delta)
-        return {arriving / choice.probability, light->direction, light->distance};
+        return {arriving / choice.probability, choice.light, light->direction, light->distance};
     const float density = choice.probability * light->pdf;
     const float weight = balance(static_cast<float>(of) * density, chance * pdf);
-    return {arriving * (weight / density), light->direction, light->distance};
+    return {arriving * (weight / density), choice.light, light->direction, light->distance};
+}
+
+/// Length of a shadow ray: it stops short of the light by what rounding may make of the place of
+/// either end.
+float shadow_length(const glm::vec3& origin, const SurfacePoint& point, const Candidate& to) {
+    const float distance = to.distance - glm::dot(origin - point.position, to.direction);
+    if (std::isinf(distance))
+        return distance;
+    const float reach = largest_coordinate(point.position + to.distance * to.direction);
+    return distance - 16 * std::numeric_limits<float>::epsilon() * std::max(point.reach, reach);
 }
 
 /// Light scattered towards the eye out of one of some sampled directions of the lights, picked in
@@ -123,7 +114,7 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
             scene.choose_light((number + place_in_stratum) / static_cast<float>(count));
         const Candidate candidate = light_candidate(*choice, count, point, frame, bsdf, chance,
                                                     glm::fract(shift + number * step));
-        const float weight = mean(candidate.light);
+        const float weight = mean(candidate.added);
         if (!(weight > 0))
             continue;
         total += weight;
@@ -138,9 +129,9 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
     if (total == 0)
         return Rgb(0);
     const glm::vec3 origin = offset_origin(point, picked.direction);
-    const float distance = picked.distance - glm::dot(origin - point.position, picked.direction);
-    const Rgb passed = scene.transmittance(origin, picked.direction, distance * kShadowShare);
-    return picked.light * passed * (total / (of_picked * static_cast<float>(count)));
+    const Rgb passed = scene.transmittance(origin, picked.direction,
+                                           shadow_length(origin, point, picked), *picked.light);
+    return picked.added * passed * (total / (of_picked * static_cast<float>(count)));
 }
 
 Rgb escaped_radiance(const Scene& scene, const glm::vec3& direction, const Scattering& last) {
@@ -206,7 +197,7 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
             continue;
         }
 
-        const Frame frame = frame_for(*point, -ray.dir);
+        const Frame frame = point->frame_towards(-ray.dir);
         const glm::vec3 eye = frame.to_local(-ray.dir);
         const Bsdf& material = *point->surface->material;
         const bool scatters = depth < scene.settings.max_depth;

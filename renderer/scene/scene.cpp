@@ -14,10 +14,6 @@ T interpolate(const std::vector<T>& values, const glm::uvec3& t, const kernel::H
     return (1 - hit.u - hit.v) * values[t.x] + hit.u * values[t.y] + hit.v * values[t.z];
 }
 
-float largest_coordinate(const glm::vec3& p) {
-    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-}
-
 } // namespace
 
 Scene::Scene(std::vector<Surface> surfaces, std::vector<std::shared_ptr<Light>> lights,
@@ -123,12 +119,31 @@ std::optional<SurfacePoint> Scene::intersect(const kernel::Ray& ray) const {
     return point;
 }
 
-Rgb Scene::transmittance(const glm::vec3& from, const glm::vec3& direction, float distance) const {
+Frame SurfacePoint::frame_towards(const glm::vec3& eye) const {
+    if (glm::dot(eye, frame.z) * glm::dot(eye, geometric_normal) > 0)
+        return frame;
+    const glm::vec3 z = geometric_normal;
+    const glm::vec3 y = frame.y - glm::dot(frame.y, z) * z;
+    const float length = glm::length(y);
+    if (!(length > 1e-6f))
+        return Frame::about(z);
+    Frame upright;
+    upright.z = z;
+    upright.y = y / length;
+    upright.x = glm::cross(upright.y, upright.z);
+    return upright;
+}
+
+Rgb Scene::transmittance(const glm::vec3& from, const glm::vec3& direction, float distance,
+                         const Light& light) const {
     Rgb passed(1);
     kernel::Ray ray{from, direction, 0, distance};
     for (int layer = 0; layer < kMaxLayers; ++layer) {
         const std::optional<SurfacePoint> point = intersect(ray);
         if (!point)
+            return passed;
+        if (point->surface->area_light.get() == &light &&
+            ray.tfar - point->distance < 1e-4f * distance)
             return passed;
         if (point->surface->fibres) {
             const auto passage = point->surface->fibres->pass(point->position, direction);
@@ -138,7 +153,8 @@ Rgb Scene::transmittance(const glm::vec3& from, const glm::vec3& direction, floa
             ray.tfar = distance - glm::dot(ray.org - from, direction);
             continue;
         }
-        passed *= point->surface->material->unscattered(point->frame.to_local(-direction));
+        passed *= point->surface->material->unscattered(
+            point->frame_towards(-direction).to_local(-direction));
         if (passed == Rgb(0))
             return passed;
         ray.org = offset_origin(*point, direction);
@@ -161,6 +177,10 @@ std::optional<Scene::LightChoice> Scene::choose_light(float u) const {
 float Scene::choice_probability(const Light& light) const {
     const auto found = probability_.find(&light);
     return found == probability_.end() ? 0 : found->second;
+}
+
+float largest_coordinate(const glm::vec3& place) {
+    return std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)});
 }
 
 glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction) {

@@ -48,6 +48,9 @@ struct SurfacePoint {
     float distance; ///< along the ray, whose direction is of unit length
     float reach;    ///< largest coordinate of the triangle: the scale of the rounding errors
 
+    /// The shading frame, or, where the eye sees by the geometry one side and by the shading normal
+    /// the other, as on silhouettes, the frame of the geometric normal.
+    Frame frame_towards(const glm::vec3& eye) const;
     /// What the surface's picture multiplies scattered light by.
     Rgb reflectance() const { return surface->reflectance ? (*surface->reflectance)(uv) : Rgb(1); }
 };
@@ -63,11 +66,13 @@ class Scene {
           std::vector<std::shared_ptr<Light>> lights);
 
     std::optional<SurfacePoint> intersect(const kernel::Ray& ray) const;
-    /// Share of light that passes from `from` along unit `direction` up to `distance`: 0 where
-    /// something opaque stands between, the product of unscattered beams through cloths; through
-    /// explicit fibres 1 where the ray meets none. After
-    /// `kMaxLayers` cloths it is 0.
-    Rgb transmittance(const glm::vec3& from, const glm::vec3& direction, float distance) const;
+    /// Share of the light of `light` that passes from there to `from`, `distance` along unit
+    /// `direction`: 0 where something opaque stands between, the product of unscattered beams
+    /// through cloths; through explicit fibres 1 where the ray meets none. After `kMaxLayers`
+    /// cloths it is 0. The light's own surface is no obstacle over the last 1/10,000 of the way:
+    /// each cloth sets the ray off along its normal, and so the end, where it is oblique.
+    Rgb transmittance(const glm::vec3& from, const glm::vec3& direction, float distance,
+                      const Light& light) const;
     static constexpr int kMaxLayers = 1000;
 
     const std::vector<Surface>& surfaces() const { return surfaces_; }
@@ -100,6 +105,9 @@ class Scene {
     std::unordered_map<const Light*, float> probability_;
     std::shared_ptr<const kernel::Scene> kernel_;
 };
+
+/// By magnitude: what rounding errors of a place are in proportion to.
+float largest_coordinate(const glm::vec3& place);
 
 /// An origin just off the surface, on the side of `direction`, such that the ray cannot meet the
 /// same triangle again at any scale: along the geometric normal by 16 ε of the triangle's largest

@@ -62,6 +62,29 @@ TEST(SceneScale, AWhiteBodyVanishesEverywhere) {
     }
 }
 
+/// Close before a lamp stands a shade, nearer by 1/20000 of the lamp's distance from the ground.
+TEST(SceneScale, AShadeCoversTheLampCloseBehindIt) {
+    for (const float size : {1e-3f, 1.0f, 1e4f}) {
+        SCOPED_TRACE(size);
+        const auto looking_down = [&](const TriangleMesh& square) {
+            TriangleMesh turned = square;
+            reverse_orientation(turned);
+            return turned;
+        };
+        const Surface ground = tests::surface(tests::level_square(size, 0), tests::diffuse(0.5f));
+        const Surface lamp =
+            tests::surface(looking_down(tests::level_square(size / 4, size)), tests::diffuse(0), 1);
+        const Surface shade =
+            tests::surface(tests::level_square(size, size * (1 - 5e-5f)), tests::diffuse(0));
+        const Camera camera = tests::parallel_camera({0, 0, size / 2}, {0, 0, 0}, size / 2, 16);
+        const auto lit = [&](const std::vector<Surface>& surfaces) {
+            return tests::Picture(Scene(surfaces, {}, camera, tests::settings(16, 2))).mean();
+        };
+        EXPECT_GT(lit({ground, lamp}), 0.01);
+        EXPECT_EQ(lit({ground, lamp, shade}), 0);
+    }
+}
+
 /// Inside a closed body no light arrives from outside, and all of what shines inside stays there: a
 /// wall of reflectance ½ that shines with radiance 1 is seen under 1/(1 − ½) = 2.
 TEST(SceneScale, ClosedBodiesAreTight) {

@@ -120,8 +120,9 @@ TEST(SceneTransmittance, MultipliesTheLayers) {
     for (int i = 1; i <= 3; ++i)
         surfaces.push_back(tests::surface(level_square(1, static_cast<float>(i)), cloth));
     const Scene scene = scene_of(surfaces);
-    const auto passed = [](const Scene& s, const glm::vec3& from, float z, float distance) {
-        return s.transmittance(from, {0, 0, z}, distance).g;
+    const auto sun = tests::sun(1, {0, 0, 1});
+    const auto passed = [&](const Scene& s, const glm::vec3& from, float z, float distance) {
+        return s.transmittance(from, {0, 0, z}, distance, *sun).g;
     };
     const glm::vec3 below(0.2f, 0.3f, 0), above(0.2f, 0.3f, 4);
     EXPECT_NEAR(passed(scene, below, 1, 10), 0.125f, 1e-5f);
