@@ -11,9 +11,9 @@
 namespace rapport {
 namespace {
 
-constexpr int kWidth = 900, kGap = 20; ///< pixels
-constexpr int kMostThreads = 12;       ///< of a repeat that are shown along each side
-constexpr double kTurnDegrees = 4;     ///< of a fibre between two segments: round enough to look at
+constexpr int kWidth = 900;        ///< pixels
+constexpr int kMostThreads = 12;   ///< of a repeat that are shown along each side
+constexpr double kTurnDegrees = 4; ///< of a fibre between two segments: round enough to look at
 constexpr Canvas::Colour kBackground{1, 1, 1};
 
 /// Warp, weft and named yarns; told apart by people who see colours differently (Okabe & Ito 2008).
@@ -26,23 +26,17 @@ constexpr std::array<glm::vec3, 6> kColours{{{0.84f, 0.37f, 0.0f},
 
 glm::vec3 colour_of(uint32_t kind) { return kColours[kind % kColours.size()]; }
 
-class ElementPicture {
+class Views {
   public:
-    explicit ElementPicture(const Cloth& cloth)
+    explicit Views(const Cloth& cloth)
         : spacing_(1e4 / cloth.ends_per_cm, 1e4 / cloth.picks_per_cm),
           element_(build_micro_element(cloth, {.max_turn_degrees = kTurnDegrees})),
           tracer_(element_.fibres),
           extent_(glm::min(element_.fibres.cell, double(kMostThreads) * spacing_)),
           scale_(kWidth / std::max(extent_.x, extent_.y)) {}
 
-    Canvas draw() {
-        const int along_x = pixels(extent_.x), along_y = pixels(extent_.y);
-        const int thick = pixels(tracer_.z_max() - tracer_.z_min());
-        Canvas canvas(std::max(along_x, along_y), along_y + 2 * (kGap + thick), kBackground);
-        draw_top(canvas, along_x, along_y);
-        draw_cut(canvas, along_y + kGap, along_x, thick, 0);
-        draw_cut(canvas, along_y + 2 * kGap + thick, along_y, thick, 1);
-        return canvas;
+    ElementViews draw() const {
+        return {scale_, top(pixels(extent_.x), pixels(extent_.y)), cut(0), cut(1)};
     }
 
   private:
@@ -50,7 +44,8 @@ class ElementPicture {
         return std::max(1, static_cast<int>(std::lround(scale_ * length)));
     }
 
-    void draw_top(Canvas& canvas, int width, int height) const {
+    Canvas top(int width, int height) const {
+        Canvas canvas(width, height, kBackground);
         const glm::vec3 lamp = glm::normalize(glm::vec3(-0.5f, 0.6f, 1));
         parallel_for(static_cast<size_t>(height), [&](size_t row) {
             for (int x = 0; x < width; ++x) {
@@ -67,6 +62,7 @@ class ElementPicture {
                            (0.25f + 0.75f * light) * colour_of(segment.kind));
             }
         });
+        return canvas;
     }
 
     /// A cut in the making: of each pixel the fibre whose axis is nearest, in its radii.
@@ -79,19 +75,25 @@ class ElementPicture {
 
     /// The plane half a spacing from the origin across the other axis: `axis` 0 runs along the weft
     /// through the first pick, 1 along the warp through the first end.
-    void draw_cut(Canvas& canvas, int top, int width, int height, int axis) const {
+    Canvas cut(int axis) const {
+        const int width = pixels(extent_[axis]), height = pixels(tracer_.z_max() - tracer_.z_min());
         const size_t size = static_cast<size_t>(width) * height;
         Cut cut{axis, width, height, std::vector<float>(size, 2), std::vector<uint32_t>(size)};
         const glm::dvec2 cell = element_.fibres.cell;
-        for (const kernel::FibreSegment& segment : tracer_.segments())
+        for (const kernel::FibreSegment& segment : tracer_.segments()) {
+            // A fibre may run through many cells before it closes, and is stored as it runs.
+            const glm::dvec2 stored(segment.start);
+            const glm::dvec2 start = stored - cell * glm::floor(stored / cell);
             for (int i = -1; i <= 1; ++i)
                 for (int j = -1; j <= 1; ++j)
-                    add_segment(segment, segment.start + glm::dvec3(i * cell.x, j * cell.y, 0),
-                                cut);
+                    add_segment(segment, {start + cell * glm::dvec2(i, j), segment.start.z}, cut);
+        }
+        Canvas canvas(width, height, kBackground);
         for (size_t i = 0; i < size; ++i)
             if (cut.distance[i] <= 1)
-                canvas.set(static_cast<int>(i % width), top + static_cast<int>(i / width),
+                canvas.set(static_cast<int>(i % width), static_cast<int>(i / width),
                            (cut.distance[i] > 0.8f ? 0.6f : 1.0f) * colour_of(cut.kind[i]));
+        return canvas;
     }
 
     void add_segment(const kernel::FibreSegment& segment, const glm::dvec3& start, Cut& cut) const {
@@ -133,6 +135,19 @@ class ElementPicture {
 
 } // namespace
 
-Canvas element_picture(const Cloth& cloth) { return ElementPicture(cloth).draw(); }
+ElementViews element_views(const Cloth& cloth) { return Views(cloth).draw(); }
+
+Drawing element_picture(const Cloth& cloth) {
+    constexpr int kGap = 20; // pixels
+    const ElementViews views = element_views(cloth);
+    const int cuts = views.top.height() + kGap;
+    const int below = cuts + views.weft_cut.height() + kGap;
+    Drawing drawing(std::max(views.top.width(), views.warp_cut.width()),
+                    below + views.warp_cut.height());
+    drawing.image({0, 0}, views.top);
+    drawing.image({0, cuts}, views.weft_cut);
+    drawing.image({0, below}, views.warp_cut);
+    return drawing;
+}
 
 } // namespace rapport

@@ -1,8 +1,10 @@
 #include "materials/table/bsdf_table.h"
+#include "renderer/app/element_picture.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/run_program.h"
 #include "tests/support/synthetic_tables.h"
 #include "tests/support/temporary_folder.h"
+#include "vgsp/micro_element.h"
 
 #include <algorithm>
 #include <array>
@@ -74,6 +76,29 @@ TEST_F(InfoPicture, AClothIsItsFibres) {
         }
     EXPECT_GT(warp, 2 * weft); // a satin's face
     EXPECT_GT(weft, 0);
+}
+
+// Linen's fibres run through many cells before they close.
+TEST(ElementViews, ACutShowsEveryFibre) {
+    const Cloth linen = read_cloth(kScenes + "cloths/linen.toml");
+    const MicroElement element = build_micro_element(linen, {.max_turn_degrees = 4});
+    double expected = 0; // area of the warp where the first pick runs through it [µm²]
+    for (const kernel::FibreChain& fibre : element.fibres.chains)
+        expected += fibre.period.y / element.fibres.cell.y * kPi * square(fibre.radius);
+
+    const ElementViews views = element_views(linen);
+    const Canvas& cut = views.weft_cut;
+    int warp = 0;
+    for (int x = 0; x < cut.width(); ++x) {
+        int weft = 0;
+        for (int y = 0; y < cut.height(); ++y) {
+            const glm::vec3 colour = cut.at(x, y);
+            warp += colour.r > colour.b + 0.1f;
+            weft += colour.b > colour.r + 0.1f;
+        }
+        EXPECT_GT(weft, 0) << x; // the first pick runs from side to side
+    }
+    EXPECT_NEAR(warp / square(views.scale), expected, 0.08 * expected);
 }
 
 TEST_F(InfoPicture, ATableIsWhereItSendsLight) {
