@@ -1,5 +1,6 @@
 #include "renderer/app/element_picture.h"
 
+#include "renderer/app/lettering.h"
 #include "renderer/core/parallel.h"
 #include "renderer/kernel/fibre_tracer.h"
 #include "vgsp/micro_element.h"
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace rapport {
 namespace {
@@ -25,6 +27,12 @@ constexpr std::array<glm::vec3, 6> kColours{{{0.84f, 0.37f, 0.0f},
                                              {0.34f, 0.71f, 0.91f}}};
 
 glm::vec3 colour_of(uint32_t kind) { return kColours[kind % kColours.size()]; }
+
+/// The longest of 1, 2 and 5 times powers of ten that is no longer.
+double round_length(double length) {
+    const double power = std::pow(10.0, std::floor(std::log10(length)));
+    return (length < 2 * power ? 1 : length < 5 * power ? 2 : 5) * power;
+}
 
 class Views {
   public:
@@ -74,7 +82,7 @@ class Views {
     };
 
     /// The plane half a spacing from the origin across the other axis: `axis` 0 runs along the weft
-    /// through the first pick, 1 along the warp through the first end.
+    /// through the first pick, 1 along the warp through the first end, and is turned upwards.
     Canvas cut(int axis) const {
         const int width = pixels(extent_[axis]), height = pixels(tracer_.z_max() - tracer_.z_min());
         const size_t size = static_cast<size_t>(width) * height;
@@ -88,11 +96,18 @@ class Views {
                 for (int j = -1; j <= 1; ++j)
                     add_segment(segment, {start + cell * glm::dvec2(i, j), segment.start.z}, cut);
         }
-        Canvas canvas(width, height, kBackground);
-        for (size_t i = 0; i < size; ++i)
-            if (cut.distance[i] <= 1)
-                canvas.set(static_cast<int>(i % width), static_cast<int>(i / width),
-                           (cut.distance[i] > 0.8f ? 0.6f : 1.0f) * colour_of(cut.kind[i]));
+        Canvas canvas(axis == 0 ? width : height, axis == 0 ? height : width, kBackground);
+        for (size_t i = 0; i < size; ++i) {
+            if (cut.distance[i] > 1)
+                continue;
+            const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+            const Canvas::Colour colour =
+                (cut.distance[i] > 0.8f ? 0.6f : 1.0f) * colour_of(cut.kind[i]);
+            if (axis == 0)
+                canvas.set(x, y, colour);
+            else
+                canvas.set(y, width - 1 - x, colour);
+        }
         return canvas;
     }
 
@@ -138,15 +153,55 @@ class Views {
 ElementViews element_views(const Cloth& cloth) { return Views(cloth).draw(); }
 
 Drawing element_picture(const Cloth& cloth) {
-    constexpr int kGap = 20; // pixels
+    constexpr double kMargin = 20, kTitle = 24, kBox = 12; // pixels
+    constexpr const char *kTop = "from the face, warp upwards",
+                         *kWeftCut = "cut along the lowest pick, face up",
+                         *kWarpCut = "cut along the leftmost end, face to the left";
     const ElementViews views = element_views(cloth);
-    const int cuts = views.top.height() + kGap;
-    const int below = cuts + views.weft_cut.height() + kGap;
-    Drawing drawing(std::max(views.top.width(), views.warp_cut.width()),
-                    below + views.warp_cut.height());
-    drawing.image({0, 0}, views.top);
-    drawing.image({0, cuts}, views.weft_cut);
-    drawing.image({0, below}, views.warp_cut);
+    const double left = kMargin;
+    const double right =
+        left + kMargin +
+        std::max({double(views.top.width()), text_width(kTop), text_width(kWeftCut)});
+    const double width =
+        right + std::max(double(views.warp_cut.width()), text_width(kWarpCut)) + kMargin;
+
+    struct Name {
+        glm::dvec2 at;
+        Drawing::Colour colour;
+        std::string words;
+    };
+    std::vector<Name> key;
+    glm::dvec2 next(left, kMargin);
+    for (const YarnKind& kind : yarn_kinds(cloth)) {
+        const double length = kBox + 6 + text_width(kind.place) + kMargin;
+        if (next.x > left && next.x + length > width)
+            next = {left, next.y + kTitle};
+        key.push_back({next, colour_of(static_cast<uint32_t>(key.size())), kind.place});
+        next.x += length;
+    }
+    const double above = next.y + kBox + 10 + kTitle;
+    const double below = above + views.top.height() + kTitle + 6;
+
+    Drawing drawing(width, below + views.weft_cut.height() + kMargin);
+    for (const Name& name : key) {
+        drawing.rectangle(name.at, name.at + kBox, name.colour);
+        drawing.text(name.at + glm::dvec2(kBox + 6, kBox - 2), Drawing::Anchor::start, name.words);
+    }
+    const auto view = [&](const glm::dvec2& corner, const char* title, const Canvas& pixels) {
+        drawing.text(corner - glm::dvec2(0, 6), Drawing::Anchor::start, title);
+        drawing.image(corner, pixels);
+    };
+    view({left, above}, kTop, views.top);
+    view({left, below}, kWeftCut, views.weft_cut);
+    view({right, above}, kWarpCut, views.warp_cut);
+
+    const double length = round_length(150 / views.scale);
+    const std::array bar{glm::dvec2(right, below + 6),
+                         glm::dvec2(right + length * views.scale, below + 6)};
+    drawing.line(bar, {0, 0, 0}, 3);
+    drawing.text(bar[0] - glm::dvec2(0, 8), Drawing::Anchor::start,
+                 length < 1000 ? fmt::format("{:g} µm", length)
+                               : fmt::format("{:g} mm", length / 1000));
     return drawing;
 }
 

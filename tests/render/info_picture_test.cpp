@@ -62,19 +62,19 @@ TEST_F(InfoPicture, ADraftIsItsDrawdown) {
     EXPECT_EQ(up, 20); // warp-faced: the weft is on top once in each pick
 }
 
-TEST_F(InfoPicture, AClothIsItsFibres) {
-    const Png png = draw(kScenes + "cloths/quickstart.toml");
-    // 5 ends of 1/80 cm by 5 picks of 1/53 cm, and two cuts below.
-    EXPECT_EQ(png.width, 900);
-    EXPECT_GT(png.height, 900);
+TEST(ElementViews, OfASatinTheFaceIsWarp) {
+    // 5 ends of 1/80 cm by 5 picks of 1/53 cm.
+    const Canvas top = element_views(read_cloth(kScenes + "cloths/quickstart.toml")).top;
+    EXPECT_EQ(top.height(), 900);
+    EXPECT_NEAR(top.width(), 900 * 53 / 80, 1);
     int warp = 0, weft = 0;
-    for (int y = 0; y < 900; ++y)
-        for (int x = 0; x < 900 * 53 / 80; ++x) {
-            const std::array<int, 3> p = png.at(x, y);
-            warp += p[0] > p[2] + 20;
-            weft += p[2] > p[0] + 20;
+    for (int y = 0; y < top.height(); ++y)
+        for (int x = 0; x < top.width(); ++x) {
+            const glm::vec3 colour = top.at(x, y);
+            warp += colour.r > colour.b + 0.08f;
+            weft += colour.b > colour.r + 0.08f;
         }
-    EXPECT_GT(warp, 2 * weft); // a satin's face
+    EXPECT_GT(warp, 2 * weft);
     EXPECT_GT(weft, 0);
 }
 
@@ -142,6 +142,11 @@ TEST_F(InfoPicture, TheEndingDecidesTheFormat) {
     const std::string draft = svg(kScenes + "drafts/satin5.wif");
     EXPECT_EQ(count(draft, "fill=\"#1a1a1f\""), 20); // warp up
     EXPECT_EQ(count(draft, "fill=\"#ffffff\""), 5);
+    const std::string cloth = svg(kScenes + "cloths/linen.toml");
+    EXPECT_EQ(count(cloth, "<image"), 3);
+    for (const char* words : {">warp<", ">weft<", ">from the face", ">cut along the lowest pick",
+                              ">cut along the leftmost end", ">100 µm<"})
+        EXPECT_EQ(count(cloth, words), 1) << words;
     const std::string table = svg(file);
     EXPECT_EQ(count(table, "<image"), 8);  // three hemispheres and the errors, of both sides
     EXPECT_EQ(count(table, "#0073b3"), 8); // two plots: a curve's halves, light and key
