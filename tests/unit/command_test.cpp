@@ -123,6 +123,14 @@ TEST_F(Command, TellsADraftToPrograms) {
     EXPECT_EQ(json["picks"], json["rows"].size());
 }
 
+TEST_F(Command, DrawsADraftInHalfBlocks) {
+    const std::string told = run_program({"info", kSource + "/scenes/drafts/satin5.wif"}).out;
+    // Of five picks the lowest stands alone, and the sides end with it.
+    EXPECT_TRUE(told.ends_with("│█▀█▄█│\n│██▀█▄│\n╵ ▀▀▀▀╵\n")) << told;
+    const std::string even = run_program({"info", kSource + "/scenes/drafts/plain.wif"}).out;
+    EXPECT_TRUE(even.ends_with("│▄▀│\n")) << even;
+}
+
 TEST_F(Command, MeasuresTellsAndExportsATable) {
     const std::string table = (folder_ / "plain.bsdf").string();
     ASSERT_EQ(run_program({"vgsp", kSource + "/scenes/cloths/viscose-plain.toml", "--incidence",
