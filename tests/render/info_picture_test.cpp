@@ -114,6 +114,23 @@ TEST_F(InfoPicture, ATableIsWhereItSendsLight) {
         std::ranges::any_of(colours, [](const auto& c) { return c[0] + c[1] + c[2] < 90; }));
 }
 
+TEST_F(InfoPicture, ErrorsThatDifferLittleAreToldApart) {
+    const std::string file = (folder_ / "table.bsdf").string();
+    BsdfTable table = tests::synthetic_table(tests::satin_intensity);
+    for (size_t d = 0; d < table.directions(); ++d)
+        table.accuracy[d] = d % 2 ? 0.75f : 0.8f;
+    write_table(table, file);
+    const Png png = draw(file);
+    int pale = 0, dark = 0;
+    for (int y = 0; y < png.height; ++y)
+        for (int x = png.width * 3 / 4; x < png.width; ++x) {
+            pale += png.at(x, y) == std::array<int, 3>{255, 242, 191};
+            dark += png.at(x, y) == std::array<int, 3>{89, 8, 38};
+        }
+    EXPECT_GT(pale, 20000); // of 83,000 on both discs
+    EXPECT_GT(dark, 20000);
+}
+
 TEST_F(InfoPicture, AModelIsItsWarp) {
     const Png png = draw(kScenes + "garments/dress.glb");
     EXPECT_EQ(png.width, 900);
@@ -148,11 +165,14 @@ TEST_F(InfoPicture, TheEndingDecidesTheFormat) {
                               ">cut along the leftmost end", ">100 µm<"})
         EXPECT_EQ(count(cloth, words), 1) << words;
     const std::string table = svg(file);
-    EXPECT_EQ(count(table, "<image"), 8);  // three hemispheres and the errors, of both sides
+    // Three hemispheres and the errors of both sides, and the scale of the errors.
+    EXPECT_EQ(count(table, "<image"), 9);
+    EXPECT_EQ(count(table, ">weft<"), 8);
+    EXPECT_EQ(count(table, ">warp<"), 8);
     EXPECT_EQ(count(table, "#0073b3"), 8); // two plots: a curve's halves, light and key
     EXPECT_EQ(count(table, "nan"), 0);
     // The embedded pictures are whole PNGs: the end chunk stands at the end of each.
-    EXPECT_EQ(count(table, "data:image/png;base64,iVBORw0KGgo"), 8);
+    EXPECT_EQ(count(table, "data:image/png;base64,iVBORw0KGgo"), 9);
     EXPECT_EQ(count(table, "</svg>"), 1);
 }
 
