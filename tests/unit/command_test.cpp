@@ -1,3 +1,4 @@
+#include "renderer/core/image.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/gltf_writer.h"
 #include "tests/support/run_program.h"
@@ -129,6 +130,14 @@ TEST_F(Command, DrawsADraftInHalfBlocks) {
     EXPECT_TRUE(told.ends_with("│█▀█▄█│\n│██▀█▄│\n╵ ▀▀▀▀╵\n")) << told;
     const std::string even = run_program({"info", kSource + "/scenes/drafts/plain.wif"}).out;
     EXPECT_TRUE(even.ends_with("│▄▀│\n")) << even;
+}
+
+TEST_F(Command, TellsAnImageWithoutBlankLines) {
+    Image image(1, 1, {"R", "G", "B"});
+    image.attributes["tables"] = "one\n"; // lines, each with its end
+    write_exr(image, folder_ / "a.exr");
+    const std::string told = run_program({"info", (folder_ / "a.exr").string()}).out;
+    EXPECT_TRUE(told.ends_with("tables: one\n")) << told;
 }
 
 TEST_F(Command, MeasuresTellsAndExportsATable) {
