@@ -36,8 +36,8 @@
 //                              "plied"
 //   fibres                     whole, 1 … 10 000       -         number of fibres in the section
 //   tex                  g/km  (0, 10 000]             -         of the yarn: as many fibres as
-//   weigh
-//                                                                it (exactly one of these two)
+//                                                                weigh it (exactly one of these
+//                                                                two)
 //   width_um, height_um  µm    (0, 10 000]                       parallel: axes of the ellipse
 //   diameter_um          µm    (0, 10 000]                       else: of the circle
 //   twist_per_m          1/m   [−100 000, 100 000]               else: turns; + is Z, − is S

@@ -79,17 +79,18 @@ class Exporter {
     Exporter(const BsdfTable& table, const std::string& name)
         : table_(table), name_(name), rgb_(table, name) {}
 
-    MeasuredFields fields(MeasuredColours colours) {
+    MeasuredFields fields(MeasuredColours colours, const ProgressSignal& progress) {
         lay_out();
-        add_densities();
-        find_lights();
+        StepCount steps(3 * eyes_.size(), progress);
+        add_densities(steps);
+        find_lights(steps);
         if (colours == MeasuredColours::rgb)
             fields_.rgb = sampled({[&](const glm::vec3& eye, const glm::vec3& light) {
                                       return rgb_.eval(eye, light);
                                   }},
-                                  3);
+                                  3, steps);
         else
-            add_spectra();
+            add_spectra(steps);
         return std::move(fields_);
     }
 
@@ -120,7 +121,7 @@ class Exporter {
 
     /// Nodes next to one above the horizon get what there is at the horizon: the density must not
     /// fall to 0 before the intensity does, or rare samples would weigh without bound.
-    void add_densities() {
+    void add_densities(StepCount& steps) {
         constexpr size_t kNodes = kRows * kColumns;
         fields_.vndf = {kRows, kColumns, std::vector<float>(eyes_.size() * kNodes)};
         parallel_for(eyes_.size(), [&](size_t incidence) {
@@ -146,11 +147,12 @@ class Exporter {
                     fields_.vndf.values[incidence * kNodes + i] =
                         std::max(luminance(rgb_.eval(eye, above_horizon(lights[i]))), least) *
                         measured_jacobian(eye, normals[i]);
+            steps.add();
         });
     }
 
     /// The directions that the nodes of the warped square stand for.
-    void find_lights() {
+    void find_lights(StepCount& steps) {
         const MarginalWarp warp(fields_.vndf.values, kRows, kColumns);
         lights_.resize(eyes_.size() * kSlice);
         parallel_for(eyes_.size(), [&](size_t incidence) {
@@ -162,11 +164,13 @@ class Exporter {
                 lights_[incidence * kSlice + i] =
                     above_horizon(mirrored(eye, measured_direction(place)));
             }
+            steps.add();
         });
     }
 
     /// `channels` values at every node, three from each function.
-    MeasuredGrid sampled(const std::vector<Intensity>& functions, size_t channels) const {
+    MeasuredGrid sampled(const std::vector<Intensity>& functions, size_t channels,
+                         StepCount& steps) const {
         MeasuredGrid grid{kSide, kSide, std::vector<float>(lights_.size() * channels)};
         parallel_for(eyes_.size(), [&](size_t incidence) {
             for (size_t i = 0; i < kSlice; ++i)
@@ -177,11 +181,12 @@ class Exporter {
                         grid.values[(incidence * channels + c) * kSlice + i] =
                             value[static_cast<int>(c - 3 * f)];
                 }
+            steps.add();
         });
         return grid;
     }
 
-    void add_spectra() {
+    void add_spectra(StepCount& steps) {
         if (table_.bands.is_rgb()) {
             fields_.wavelengths.assign(std::begin(kPrimaries), std::end(kPrimaries));
             const std::vector<Rgb> rgb = rgb_of_samples(fields_.wavelengths);
@@ -190,7 +195,7 @@ class Exporter {
                 sampled({[&](const glm::vec3& eye, const glm::vec3& light) {
                             return glm::max(spectrum_of * rgb_.eval(eye, light), glm::vec3(0));
                         }},
-                        3);
+                        3, steps);
             return;
         }
         const std::vector<double>& edges = table_.bands.edges_nm;
@@ -205,7 +210,7 @@ class Exporter {
                         return bands->eval(eye, light);
                     });
         }
-        fields_.spectra = sampled(functions, table_.bands.count());
+        fields_.spectra = sampled(functions, table_.bands.count(), steps);
     }
 
     const BsdfTable& table_;
@@ -244,8 +249,10 @@ glm::vec3 even_direction(size_t i, size_t count) {
     return glm::vec3(spherical_direction(std::acos(cosine), 2 * kPi * kGolden * double(i)));
 }
 
-void compare(const TableBsdf& table, const MeasuredBrdf& file, MeasuredLosses& losses) {
+void compare(const TableBsdf& table, const MeasuredBrdf& file, MeasuredLosses& losses,
+             const ProgressSignal& progress) {
     constexpr size_t kEyes = 200, kLights = 2000;
+    StepCount steps(kEyes, progress);
     double squares = 0, mean = 0;
     for (size_t e = 0; e < kEyes; ++e) {
         const glm::vec3 eye = even_direction(e, kEyes);
@@ -262,6 +269,7 @@ void compare(const TableBsdf& table, const MeasuredBrdf& file, MeasuredLosses& l
         if (albedo_table > 0)
             losses.largest_albedo_error =
                 std::max(losses.largest_albedo_error, std::abs(albedo_file / albedo_table - 1));
+        steps.add();
     }
     if (mean > 0)
         losses.resolution = std::sqrt(squares * kEyes * kLights) / mean;
@@ -270,13 +278,21 @@ void compare(const TableBsdf& table, const MeasuredBrdf& file, MeasuredLosses& l
 } // namespace
 
 MeasuredFields measured_fields(const BsdfTable& table, const std::string& name,
-                               MeasuredColours colours) {
-    return Exporter(table, name).fields(colours);
+                               MeasuredColours colours, const ProgressSignal& progress) {
+    return Exporter(table, name).fields(colours, progress);
 }
 
 MeasuredLosses export_measured(const BsdfTable& table, const std::string& name,
-                               MeasuredColours colours, const std::filesystem::path& path) {
-    const MeasuredFields fields = measured_fields(table, name, colours);
+                               MeasuredColours colours, const std::filesystem::path& path,
+                               const ProgressSignal& progress) {
+    // The comparison takes about as long as all before it.
+    const auto half = [&](double start) -> ProgressSignal {
+        return [&progress, start](double fraction) {
+            if (progress)
+                progress(start + 0.5 * fraction);
+        };
+    };
+    const MeasuredFields fields = measured_fields(table, name, colours, half(0));
     write_measured(fields, path);
 
     MeasuredLosses losses;
@@ -290,7 +306,7 @@ MeasuredLosses export_measured(const BsdfTable& table, const std::string& name,
     losses.unscattered = mean_over_sky(table, Side::front, unscattered);
     losses.back_reflected = mean_over_sky(table, Side::back, reflected);
     losses.back_transmitted = mean_over_sky(table, Side::back, transmitted);
-    compare(TableBsdf(table, name), MeasuredBrdf(fields), losses);
+    compare(TableBsdf(table, name), MeasuredBrdf(fields), losses, half(0.5));
     return losses;
 }
 

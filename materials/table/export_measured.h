@@ -2,6 +2,7 @@
 
 #include "materials/table/bsdf_table.h"
 #include "materials/table/measured_fields.h"
+#include "renderer/core/progress.h"
 
 #include <filesystem>
 
@@ -35,10 +36,11 @@ enum class MeasuredColours { rgb, spectra };
 /// mirrored directions have density ∝ intensity, so that the nodes stand where the light goes and
 /// directions are sampled in proportion to it.
 MeasuredFields measured_fields(const BsdfTable& table, const std::string& name,
-                               MeasuredColours colours);
+                               MeasuredColours colours, const ProgressSignal& progress = {});
 
 /// Writes it, and tells what was lost. FileError(`name`) if the table is partial or lacks a side.
 MeasuredLosses export_measured(const BsdfTable& table, const std::string& name,
-                               MeasuredColours colours, const std::filesystem::path& path);
+                               MeasuredColours colours, const std::filesystem::path& path,
+                               const ProgressSignal& progress = {});
 
 } // namespace rapport

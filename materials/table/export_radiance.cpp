@@ -25,6 +25,8 @@ constexpr float kCellSize = static_cast<float>(kPi) / kCells;
 constexpr float kTolerance = 0.05f, kAbsolute = 0.002f / static_cast<float>(kPi);
 constexpr float kColourTolerance = 0.005f; ///< of u′ and v′
 
+constexpr size_t kTreeSteps = 200; ///< about as many directions are filled while a tree is written
+
 /// What WINDOW and Radiance call the four blocks; their back is our face.
 struct Block {
     float in, out; ///< sign of z
@@ -52,7 +54,9 @@ struct SideValues {
 
 class Exporter {
   public:
-    Exporter(const BsdfTable& table, const std::string& name) : table_(table, name), name_(name) {}
+    Exporter(const BsdfTable& table, const std::string& name, const ProgressSignal& progress)
+        : table_(table, name), name_(name),
+          steps_(2 * kCells + 3 * std::size(kBlocks) * kTreeSteps, progress) {}
 
     RadianceLosses write(std::ofstream& out) {
         out << fmt::format(
@@ -91,7 +95,10 @@ class Exporter {
             for (std::vector<float>& block : *of)
                 block.resize(kCells * kCells);
         std::vector<float> flux(kCells);
-        parallel_for(kCells, [&](size_t i) { flux[i] = fill_incidence(i, in, values); });
+        parallel_for(kCells, [&](size_t i) {
+            flux[i] = fill_incidence(i, in, values);
+            steps_.add();
+        });
 
         size_t block_number = 0;
         for (const Block& block : kBlocks) {
@@ -180,18 +187,20 @@ class Exporter {
                            wavelength, block.direction, block.type)
             << tree
             << "\n\t\t\t</ScatteringData>\n\t\t</WavelengthDataBlock>\n\t</WavelengthData>\n";
+        steps_.add(kTreeSteps);
     }
 
     TableBsdf table_;
     std::string name_;
+    StepCount steps_; ///< a direction of incidence each
     RadianceLosses losses_;
 };
 
 } // namespace
 
 RadianceLosses export_radiance(const BsdfTable& table, const std::string& name,
-                               const std::filesystem::path& path) {
-    Exporter exporter(table, name);
+                               const std::filesystem::path& path, const ProgressSignal& progress) {
+    Exporter exporter(table, name, progress);
     RadianceLosses losses;
     write_stream_atomically(path, [&](std::ofstream& out) { losses = exporter.write(out); });
     return losses;

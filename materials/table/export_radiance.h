@@ -1,6 +1,7 @@
 #pragma once
 
 #include "materials/table/bsdf_table.h"
+#include "renderer/core/progress.h"
 
 #include <filesystem>
 #include <string>
@@ -21,6 +22,7 @@ struct RadianceLosses {
 /// incidence scatters what the table says; then cells that are nearly equal are merged.
 /// FileError(`name`) if the table is partial or lacks a side.
 RadianceLosses export_radiance(const BsdfTable& table, const std::string& name,
-                               const std::filesystem::path& path);
+                               const std::filesystem::path& path,
+                               const ProgressSignal& progress = {});
 
 } // namespace rapport

@@ -21,7 +21,7 @@ void add_render_command(CLI::App& app, const CommonOptions& common);
 void add_view_command(CLI::App& app, const CommonOptions& common);
 void add_diff_command(CLI::App& app, int& status);
 void add_info_command(CLI::App& app);
-void add_export_command(CLI::App& app);
+void add_export_command(CLI::App& app, const CommonOptions& common);
 
 /// True when standard error is a terminal and progress is wanted.
 bool shows_progress(const CommonOptions& common);

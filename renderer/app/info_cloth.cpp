@@ -31,9 +31,11 @@ std::string draft_text(const Draft& draft) {
     std::string text = fmt::format("{} ends × {} picks\n", draft.ends, draft.picks);
     if (draft.ends <= kWidestPicture && draft.picks <= kWidestPicture)
         for (int pick = draft.picks - 1; pick >= 0; pick -= 2) { // pick 1 at the bottom
+            const char* side = pick > 0 ? "│" : "╵"; // half as high beside a single pick
+            text += side;
             for (int end = 0; end < draft.ends; ++end)
                 text += kHalfBlocks[draft.up(end, pick)][pick > 0 && draft.up(end, pick - 1)];
-            text += '\n';
+            text += side + std::string("\n");
         }
     for (const std::string& warning : draft.warnings)
         text += "warning: " + warning + '\n';

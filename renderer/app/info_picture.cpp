@@ -72,7 +72,7 @@ void draw_picture(const std::filesystem::path& file, const std::filesystem::path
     using Path = const std::filesystem::path&;
     static const std::map<std::string, std::function<Drawing(Path)>> pictures{
         {".wif", [](Path path) { return drawdown(read_wif(path)); }},
-        {".toml", [](Path path) { return picture(element_picture(read_cloth(path))); }},
+        {".toml", [](Path path) { return element_picture(read_cloth(path)); }},
         {".bsdf", [](Path path) { return table_picture(read_table(path)); }},
         {".gltf", frames},
         {".glb", frames}};

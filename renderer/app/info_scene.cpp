@@ -22,7 +22,7 @@ Info image_info(const std::filesystem::path& path) {
     info.text = fmt::format("Image {} × {}: {}\n", image.width, image.height,
                             fmt::join(image.channels, ", "));
     for (const auto& [name, value] : image.attributes)
-        info.text += name + ": " + value + '\n';
+        info.text += name + ": " + value + (value.ends_with('\n') ? "" : "\n");
     return info;
 }
 

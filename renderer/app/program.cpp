@@ -58,7 +58,7 @@ int run_program(int argc, char** argv) {
     add_view_command(app, common);
     add_diff_command(app, status);
     add_info_command(app);
-    add_export_command(app);
+    add_export_command(app, common);
 
     try {
         app.parse(argc, argv);

@@ -11,7 +11,7 @@ namespace rapport {
 namespace {
 
 constexpr std::array kTheta{0.0, 30.0, 60.0};
-constexpr int kDisc = 230, kGap = 18, kTitle = 22, kKey = 18; ///< pixels
+constexpr int kDisc = 230, kGap = 36, kTitle = 38, kKey = 18; ///< pixels
 constexpr int kPolar = 400;                                   ///< diameter
 constexpr double kWidth = 4 * (kDisc + kGap) + kGap;
 constexpr Drawing::Colour kWhite{1, 1, 1}, kGrid{0.82f, 0.82f, 0.84f}, kAxis{0.55f, 0.55f, 0.58f};
@@ -89,33 +89,63 @@ Drawing::Colour error_colour(double share) {
     return s < 0.5f ? glm::mix(pale, middle, 2 * s) : glm::mix(middle, dark, 2 * s - 1);
 }
 
-/// ε of the measured direction that is nearest to each, over the largest.
-Canvas error_map(const BsdfTable& table, const std::vector<size_t>& directions) {
+struct ErrorScale {
+    double least, most;
+
+    Drawing::Colour colour(double error) const {
+        return error_colour(most > least ? (error - least) / (most - least) : 0.5);
+    }
+};
+
+/// ε of the measured direction that is nearest to each.
+Canvas error_map(const BsdfTable& table, const std::vector<size_t>& directions,
+                 const ErrorScale& scale) {
     std::vector<glm::dvec3> from;
     for (const size_t d : directions)
         from.push_back(direction_of(table.incident[d]));
-    const double largest = std::max<double>(table.largest_accuracy(), 1e-30);
     return disc([&](const glm::dvec3& to) {
         const auto distance = [&](const glm::dvec3& other) { return glm::distance(to, other); };
         const size_t nearest =
             static_cast<size_t>(std::ranges::min_element(from, {}, distance) - from.begin());
-        return error_colour(table.accuracy[directions[nearest]] / largest);
+        return scale.colour(table.accuracy[directions[nearest]]);
     });
 }
 
-void draw_errors(Drawing& drawing, const BsdfTable& table, Side side, const glm::dvec2& corner) {
+/// A disc() with its title above, and the directions of weft and warp at its edge.
+void draw_disc(Drawing& drawing, const glm::dvec2& corner, const std::string& title,
+               Canvas pixels) {
+    const double middle = kDisc / 2.0;
+    drawing.text(corner + glm::dvec2(middle, 16 - kTitle), Drawing::Anchor::middle, title);
+    drawing.text(corner + glm::dvec2(middle, -4), Drawing::Anchor::middle, "warp");
+    drawing.text(corner + glm::dvec2(kDisc + 3, middle + 4), Drawing::Anchor::start, "weft");
+    drawing.image(corner, std::move(pixels));
+}
+
+void draw_errors(Drawing& drawing, const BsdfTable& table, Side side, const ErrorScale& scale,
+                 const glm::dvec2& corner) {
     std::vector<size_t> directions;
     for (size_t d = 0; d < table.directions(); ++d)
         if (table.incident[d].side == side)
             directions.push_back(d);
-    if (directions.empty())
-        return;
-    const auto error = [&](size_t d) { return table.accuracy[d]; };
-    const auto [least, most] = std::ranges::minmax(directions, {}, error);
-    drawing.text(corner + glm::dvec2(kDisc / 2.0, -8), Drawing::Anchor::middle,
-                 fmt::format("ε of light from the {}: {:.3g} to {:.3g}",
-                             side == Side::front ? "front" : "back", error(least), error(most)));
-    drawing.image(corner, error_map(table, directions));
+    if (!directions.empty())
+        draw_disc(drawing, corner,
+                  fmt::format("ε of light from the {}", side == Side::front ? "front" : "back"),
+                  error_map(table, directions, scale));
+}
+
+/// The colours of ε, with the numbers of both ends.
+void draw_scale(Drawing& drawing, const ErrorScale& scale, const glm::dvec2& corner) {
+    constexpr int kHeight = 12;
+    Canvas colours(kDisc, kHeight, kWhite);
+    for (int x = 0; x < kDisc; ++x)
+        colours.fill({x, 0}, {x + 1, kHeight},
+                     scale.colour(std::lerp(scale.least, scale.most, (x + 0.5) / kDisc)));
+    drawing.image(corner, std::move(colours));
+    const double base = kHeight + 14;
+    drawing.text(corner + glm::dvec2(0, base), Drawing::Anchor::start,
+                 fmt::format("ε = {:.3g}", scale.least));
+    drawing.text(corner + glm::dvec2(kDisc, base), Drawing::Anchor::end,
+                 fmt::format("{:.3g}", scale.most));
 }
 
 /// Mean over the bands of the intensity [1/sr] at an angle from the normal in the plane of the
@@ -195,24 +225,26 @@ void draw_polar(Drawing& drawing, const BsdfTable& table, bool along_warp,
 } // namespace
 
 Drawing table_picture(const BsdfTable& table) {
-    constexpr double kRow = kTitle + kDisc + kGap;
-    constexpr double kPolarTop = 2 * kRow + 2 * kGap;
+    constexpr double kRow = kTitle + kDisc + 10;
+    constexpr double kPolarTop = 2 * kRow + 50;
     Drawing drawing(kWidth, kPolarTop + kPolar + 5 * kKey);
+    const auto corner = [](size_t column, int row) {
+        return glm::dvec2(kGap + static_cast<double>(column) * (kDisc + kGap), kTitle + row * kRow);
+    };
     for (size_t i = 0; i < kTheta.size(); ++i) {
         const size_t direction =
             nearest_direction(table, spherical_direction(radians(kTheta[i]), 0.0));
-        for (const int block : {0, 1}) {
-            const glm::dvec2 corner(kGap + static_cast<double>(i) * (kDisc + kGap),
-                                    kTitle + block * kRow);
-            drawing.text(corner + glm::dvec2(kDisc / 2.0, -8), Drawing::Anchor::middle,
-                         (block == 0 ? "reflected, " : "transmitted, ") +
-                             name_of(table.incident[direction]));
-            drawing.image(corner, hemisphere(table, direction, block));
-        }
+        for (const int block : {0, 1})
+            draw_disc(drawing, corner(i, block),
+                      (block == 0 ? "reflected, " : "transmitted, ") +
+                          name_of(table.incident[direction]),
+                      hemisphere(table, direction, block));
     }
-    const double last = kGap + 3 * (kDisc + kGap);
-    draw_errors(drawing, table, Side::front, {last, kTitle});
-    draw_errors(drawing, table, Side::back, {last, kTitle + kRow});
+    const auto [least, most] = std::ranges::minmax(table.accuracy);
+    const ErrorScale scale{least, most};
+    draw_errors(drawing, table, Side::front, scale, corner(3, 0));
+    draw_errors(drawing, table, Side::back, scale, corner(3, 1));
+    draw_scale(drawing, scale, corner(3, 1) + glm::dvec2(0, kDisc + 8));
     for (const bool along_warp : {false, true})
         draw_polar(drawing, table, along_warp,
                    {(along_warp ? 0.75 : 0.25) * kWidth, kPolarTop + kPolar / 2.0});

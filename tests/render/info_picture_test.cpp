@@ -1,8 +1,10 @@
 #include "materials/table/bsdf_table.h"
+#include "renderer/app/element_picture.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/run_program.h"
 #include "tests/support/synthetic_tables.h"
 #include "tests/support/temporary_folder.h"
+#include "vgsp/micro_element.h"
 
 #include <algorithm>
 #include <array>
@@ -60,20 +62,43 @@ TEST_F(InfoPicture, ADraftIsItsDrawdown) {
     EXPECT_EQ(up, 20); // warp-faced: the weft is on top once in each pick
 }
 
-TEST_F(InfoPicture, AClothIsItsFibres) {
-    const Png png = draw(kScenes + "cloths/quickstart.toml");
-    // 5 ends of 1/80 cm by 5 picks of 1/53 cm, and two cuts below.
-    EXPECT_EQ(png.width, 900);
-    EXPECT_GT(png.height, 900);
+TEST(ElementViews, OfASatinTheFaceIsWarp) {
+    // 5 ends of 1/80 cm by 5 picks of 1/53 cm.
+    const Canvas top = element_views(read_cloth(kScenes + "cloths/quickstart.toml")).top;
+    EXPECT_EQ(top.height(), 900);
+    EXPECT_NEAR(top.width(), 900 * 53 / 80, 1);
     int warp = 0, weft = 0;
-    for (int y = 0; y < 900; ++y)
-        for (int x = 0; x < 900 * 53 / 80; ++x) {
-            const std::array<int, 3> p = png.at(x, y);
-            warp += p[0] > p[2] + 20;
-            weft += p[2] > p[0] + 20;
+    for (int y = 0; y < top.height(); ++y)
+        for (int x = 0; x < top.width(); ++x) {
+            const glm::vec3 colour = top.at(x, y);
+            warp += colour.r > colour.b + 0.08f;
+            weft += colour.b > colour.r + 0.08f;
         }
-    EXPECT_GT(warp, 2 * weft); // a satin's face
+    EXPECT_GT(warp, 2 * weft);
     EXPECT_GT(weft, 0);
+}
+
+// Linen's fibres run through many cells before they close.
+TEST(ElementViews, ACutShowsEveryFibre) {
+    const Cloth linen = read_cloth(kScenes + "cloths/linen.toml");
+    const MicroElement element = build_micro_element(linen, {.max_turn_degrees = 4});
+    double expected = 0; // area of the warp where the first pick runs through it [µm²]
+    for (const kernel::FibreChain& fibre : element.fibres.chains)
+        expected += fibre.period.y / element.fibres.cell.y * kPi * square(fibre.radius);
+
+    const ElementViews views = element_views(linen);
+    const Canvas& cut = views.weft_cut;
+    int warp = 0;
+    for (int x = 0; x < cut.width(); ++x) {
+        int weft = 0;
+        for (int y = 0; y < cut.height(); ++y) {
+            const glm::vec3 colour = cut.at(x, y);
+            warp += colour.r > colour.b + 0.1f;
+            weft += colour.b > colour.r + 0.1f;
+        }
+        EXPECT_GT(weft, 0) << x; // the first pick runs from side to side
+    }
+    EXPECT_NEAR(warp / square(views.scale), expected, 0.08 * expected);
 }
 
 TEST_F(InfoPicture, ATableIsWhereItSendsLight) {
@@ -87,6 +112,23 @@ TEST_F(InfoPicture, ATableIsWhereItSendsLight) {
     EXPECT_TRUE(colours.contains({0, 115, 179}));
     EXPECT_TRUE(
         std::ranges::any_of(colours, [](const auto& c) { return c[0] + c[1] + c[2] < 90; }));
+}
+
+TEST_F(InfoPicture, ErrorsThatDifferLittleAreToldApart) {
+    const std::string file = (folder_ / "table.bsdf").string();
+    BsdfTable table = tests::synthetic_table(tests::satin_intensity);
+    for (size_t d = 0; d < table.directions(); ++d)
+        table.accuracy[d] = d % 2 ? 0.75f : 0.8f;
+    write_table(table, file);
+    const Png png = draw(file);
+    int pale = 0, dark = 0;
+    for (int y = 0; y < png.height; ++y)
+        for (int x = png.width * 3 / 4; x < png.width; ++x) {
+            pale += png.at(x, y) == std::array<int, 3>{255, 242, 191};
+            dark += png.at(x, y) == std::array<int, 3>{89, 8, 38};
+        }
+    EXPECT_GT(pale, 20000); // of 83,000 on both discs
+    EXPECT_GT(dark, 20000);
 }
 
 TEST_F(InfoPicture, AModelIsItsWarp) {
@@ -117,12 +159,20 @@ TEST_F(InfoPicture, TheEndingDecidesTheFormat) {
     const std::string draft = svg(kScenes + "drafts/satin5.wif");
     EXPECT_EQ(count(draft, "fill=\"#1a1a1f\""), 20); // warp up
     EXPECT_EQ(count(draft, "fill=\"#ffffff\""), 5);
+    const std::string cloth = svg(kScenes + "cloths/linen.toml");
+    EXPECT_EQ(count(cloth, "<image"), 3);
+    for (const char* words : {">warp<", ">weft<", ">from the face", ">cut along the lowest pick",
+                              ">cut along the leftmost end", ">100 µm<"})
+        EXPECT_EQ(count(cloth, words), 1) << words;
     const std::string table = svg(file);
-    EXPECT_EQ(count(table, "<image"), 8);  // three hemispheres and the errors, of both sides
+    // Three hemispheres and the errors of both sides, and the scale of the errors.
+    EXPECT_EQ(count(table, "<image"), 9);
+    EXPECT_EQ(count(table, ">weft<"), 8);
+    EXPECT_EQ(count(table, ">warp<"), 8);
     EXPECT_EQ(count(table, "#0073b3"), 8); // two plots: a curve's halves, light and key
     EXPECT_EQ(count(table, "nan"), 0);
     // The embedded pictures are whole PNGs: the end chunk stands at the end of each.
-    EXPECT_EQ(count(table, "data:image/png;base64,iVBORw0KGgo"), 8);
+    EXPECT_EQ(count(table, "data:image/png;base64,iVBORw0KGgo"), 9);
     EXPECT_EQ(count(table, "</svg>"), 1);
 }
 

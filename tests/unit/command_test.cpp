@@ -1,3 +1,4 @@
+#include "renderer/core/image.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/gltf_writer.h"
 #include "tests/support/run_program.h"
@@ -121,6 +122,22 @@ TEST_F(Command, TellsADraftToPrograms) {
     EXPECT_EQ(json["kind"], "draft");
     EXPECT_EQ(json["ends"], json["rows"][0].get<std::string>().size());
     EXPECT_EQ(json["picks"], json["rows"].size());
+}
+
+TEST_F(Command, DrawsADraftInHalfBlocks) {
+    const std::string told = run_program({"info", kSource + "/scenes/drafts/satin5.wif"}).out;
+    // Of five picks the lowest stands alone, and the sides end with it.
+    EXPECT_TRUE(told.ends_with("│█▀█▄█│\n│██▀█▄│\n╵ ▀▀▀▀╵\n")) << told;
+    const std::string even = run_program({"info", kSource + "/scenes/drafts/plain.wif"}).out;
+    EXPECT_TRUE(even.ends_with("│▄▀│\n")) << even;
+}
+
+TEST_F(Command, TellsAnImageWithoutBlankLines) {
+    Image image(1, 1, {"R", "G", "B"});
+    image.attributes["tables"] = "one\n"; // lines, each with its end
+    write_exr(image, folder_ / "a.exr");
+    const std::string told = run_program({"info", (folder_ / "a.exr").string()}).out;
+    EXPECT_TRUE(told.ends_with("tables: one\n")) << told;
 }
 
 TEST_F(Command, MeasuresTellsAndExportsATable) {

@@ -7,6 +7,7 @@
 #include "tests/support/synthetic_tables.h"
 #include "tests/support/temporary_folder.h"
 
+#include <atomic>
 #include <gtest/gtest.h>
 
 namespace rapport {
@@ -60,8 +61,11 @@ TEST(ExportMeasured, IsTheReflectionOfTheFace) {
 
 TEST(ExportMeasured, KeepsTheEnergyAndTellsWhatItLost) {
     const tests::TemporaryFolder folder;
+    std::atomic<double> progress = 0;
     const MeasuredLosses losses =
-        export_measured(table(), "streak", MeasuredColours::rgb, folder / "a.bsdf");
+        export_measured(table(), "streak", MeasuredColours::rgb, folder / "a.bsdf",
+                        [&](double fraction) { progress = fraction; });
+    EXPECT_EQ(progress, 1);
     EXPECT_TRUE(is_measured_file(folder / "a.bsdf"));
     EXPECT_NEAR(losses.unscattered, 0.05, 1e-6);
     EXPECT_NEAR(losses.transmitted, 0.3 * kPi * (0.25 + 0.1 + 0.05) / 3, 1e-3);

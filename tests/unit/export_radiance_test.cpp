@@ -8,6 +8,7 @@
 #include "tests/support/synthetic_tables.h"
 #include "tests/support/temporary_folder.h"
 
+#include <atomic>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -36,12 +37,14 @@ struct Exported {
     BsdfTable table = tests::synthetic_table(slanted, kUnscattered);
     TableBsdf bsdf{table, ""};
     RadianceLosses losses;
+    std::atomic<double> progress = 0; ///< the last that was told
     std::string text;
     tests::RadianceBlocks blocks;
 
     Exported() {
         const tests::TemporaryFolder folder;
-        losses = export_radiance(table, "<slanted> & co", folder / "a.xml");
+        losses = export_radiance(table, "<slanted> & co", folder / "a.xml",
+                                 [&](double fraction) { progress = fraction; });
         text = tests::read_bytes(folder / "a.xml");
         blocks = tests::read_radiance(text);
     }
@@ -140,6 +143,8 @@ double difference(bool mirrored) {
         }
     return std::sqrt(squares * count) / sum;
 }
+
+TEST(ExportRadiance, TellsWhenAllIsDone) { EXPECT_EQ(exported().progress, 1); }
 
 TEST(ExportRadiance, IsTheBsdfInAllFourBlocks) {
     EXPECT_LT(difference(false), 0.1); // cells are 5° wide, and merged within 5 %

@@ -1,3 +1,4 @@
+#include "tests/support/file_bytes.h"
 #include "vgsp/cloth.h"
 #include "vgsp/micro_element.h"
 
@@ -40,6 +41,22 @@ TEST(OurCloths, WeighWhatTheirSourcesSay) {
             {.max_turn_degrees = 8});
         EXPECT_NEAR(element.mass_g_per_m2.value(), mass, 0.15 * mass) << name;
         EXPECT_NEAR(element.thickness_um, thickness, 0.15 * thickness) << name;
+    }
+}
+
+TEST(OurCloths, TheReadmesIsWovenOfAnyOfOurDrafts) {
+    constexpr std::string_view kOpening = "```toml\n";
+    const std::string readme = tests::read_bytes(RAPPORT_SOURCE_DIR "/README.md");
+    const size_t start = readme.find(kOpening) + kOpening.size();
+    const tests::TemporaryFolder folder;
+    const auto cloth = tests::write_bytes(
+        folder, "my.toml",
+        std::string_view(readme).substr(start, readme.find("```", start) - start));
+    for (const auto& draft :
+         std::filesystem::directory_iterator(RAPPORT_SOURCE_DIR "/scenes/drafts")) {
+        std::filesystem::copy_file(draft, folder / "my.wif",
+                                   std::filesystem::copy_options::overwrite_existing);
+        EXPECT_GT(build_micro_element(read_cloth(cloth)).segments, 0u) << draft;
     }
 }
 

@@ -2,7 +2,7 @@
 """Error against bytes of ways to table a cloth's exits, from the rays of tests/bench/exit_rays_bench:
 
     for cloth in viscose-satin viscose-plain wool-gabardine; do
-        build/tests/exit_rays_bench scenes/cloths/$cloth.toml $cloth.rays 25000 100000; done
+        build/tests/tests/exit_rays_bench scenes/cloths/$cloth.toml $cloth.rays 25000 100000; done
     python3 tests/bench/charts/parameterisation.py viscose-satin.rays viscose-plain.rays wool-gabardine.rays
 
 Draws parameterisation.svg and interpolation.svg beside this file. The error is the RMS difference of

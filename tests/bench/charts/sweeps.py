@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the sweeps of tests/bench/sweeps_bench, read from standard input, as SVGs beside this file.
 
-    build/tests/sweeps_bench | python3 tests/bench/charts/sweeps.py
+    build/tests/tests/sweeps_bench | python3 tests/bench/charts/sweeps.py
 
 Needs matplotlib (Debian: python3-matplotlib).
 """
