@@ -89,7 +89,10 @@ Film render_watched(const Scene& scene, const CommonOptions& common,
     std::optional<ProgressLine> line;
     if (shows_progress(common))
         line.emplace(std::cerr, "rendering");
-    std::signal(SIGINT, [](int) { interrupted = 1; });
+    std::signal(SIGINT, [](int) {
+        interrupted = 1;
+        std::signal(SIGINT, SIG_DFL); // a second one does not wait for the samples in hand
+    });
     RenderWatcher watcher;
     const auto start = std::chrono::steady_clock::now();
     const double pixels =
@@ -134,6 +137,7 @@ Image described_image(const Film& film, const Scene& scene, const RenderOptions&
     image.attributes["command"] = command;
     image.attributes["seed"] = std::to_string(common.seed);
     image.attributes["samples"] = fmt::format("{:.4g}", film.mean_samples());
+    image.attributes["cut"] = fmt::format("{:.4g}", film.cut_share());
     image.attributes["noise"] = fmt::format("{:.4g}", film.noise().relative());
     return image;
 }
@@ -179,8 +183,12 @@ void run(const RenderOptions& options, const CommonOptions& common) {
                        image.attributes["noise"], seconds,
                        interrupted ? ", interrupted; --resume goes on" : "");
     }
-    if (!common.quiet)
+    if (!common.quiet) {
         fmt::print("{}", table_errors(tables));
+        if (const double cut = film.cut_share(); cut > 0)
+            fmt::print("maxdepth {}: {:.2g} % of the scattering was cut off\n",
+                       scene.settings.max_depth, 100 * cut);
+    }
     if (!interrupted)
         std::filesystem::remove(checkpoint.path);
 }

@@ -30,9 +30,10 @@ struct PadSeeds {
 } // namespace
 
 Sampler::Sampler(Kind kind, uint64_t seed, uint64_t pixel, uint32_t sample)
-    : kind_(kind), rng_(seed, Purpose::pixel, pixel, sample), scramble_seed_(0), sample_(sample) {
+    : kind_(kind), rng_(seed, Purpose::pixel, pixel, sample), scramble_seed_(0),
+      sample_(sample / 2) {
     if (kind_ == Kind::sobol) {
-        CounterRng scramble(seed, Purpose::scramble, pixel, 0);
+        CounterRng scramble(seed, Purpose::scramble, pixel, sample % 2);
         scramble_seed_ = scramble.bits();
         scramble_seed_ = scramble_seed_ << 32 | scramble.bits();
     }

@@ -8,7 +8,8 @@ namespace rapport {
 
 /// The numbers of one camera path: independent, or Owen-scrambled Sobol points, each consumed
 /// dimension pair padded with a shuffled index of its own (Burley 2020, "Practical Hash-based Owen
-/// Scrambling", JCGT 9(4)). A pure function of (seed, pixel, sample).
+/// Scrambling", JCGT 9(4)). Samples of even and of odd number are two sets of points that are
+/// scrambled apart: what they differ by tells the error. A pure function of (seed, pixel, sample).
 class Sampler {
   public:
     enum class Kind { independent, sobol };

@@ -34,17 +34,20 @@ double Film::mean_samples() const {
     return sum / static_cast<double>(pixels_.size());
 }
 
-void Film::add(int x, int y, const FilmSample& sample) {
+void Film::add(int x, int y, int number, const FilmSample& sample) {
     Pixel& pixel = pixels_[index(x, y)];
     const glm::dvec3 radiance(sample.radiance);
     pixel.radiance += radiance;
     pixel.squares += radiance * radiance;
+    if (number % 2 != 0)
+        pixel.odd += radiance;
     if (!sample.hit)
         return;
     pixel.albedo += sample.albedo;
     pixel.normal += sample.normal;
     pixel.warp += sample.warp;
     pixel.depth += sample.depth;
+    pixel.cut += sample.cut;
     ++pixel.hits;
 }
 
@@ -69,6 +72,23 @@ glm::dvec3 Film::Pixel::variance_of_mean(int samples) const {
     return glm::max(squares - radiance * radiance / n, 0.0) / (n * (n - 1));
 }
 
+glm::dvec3 Film::Pixel::variance_between_halves(int samples) const {
+    if (samples < 2)
+        return glm::dvec3(std::numeric_limits<double>::infinity());
+    const int odd_ones = samples / 2, even_ones = samples - odd_ones;
+    const glm::dvec3 apart = odd / double(odd_ones) - (radiance - odd) / double(even_ones);
+    return apart * apart * (double(odd_ones) * even_ones / square(double(samples)));
+}
+
+double Film::cut_share() const {
+    double cut = 0, scattered = 0;
+    for (const Pixel& pixel : pixels_) {
+        cut += pixel.cut;
+        scattered += (pixel.albedo.r + pixel.albedo.g + pixel.albedo.b) / 3;
+    }
+    return scattered > 0 ? cut / scattered : 0;
+}
+
 double Film::Noise::relative() const { return variance > 0 ? std::sqrt(variance) / mean : 0; }
 
 Film::Noise Film::noise(const Tile& tile) const {
@@ -78,7 +98,7 @@ Film::Noise Film::noise(const Tile& tile) const {
     for (int y = tile.first.y; y < tile.end.y; ++y)
         for (int x = tile.first.x; x < tile.end.x; ++x) {
             const Pixel& pixel = pixels_[index(x, y)];
-            const glm::dvec3 variance = pixel.variance_of_mean(tile.samples);
+            const glm::dvec3 variance = pixel.variance_between_halves(tile.samples);
             noise.mean += (pixel.radiance.r + pixel.radiance.g + pixel.radiance.b) / tile.samples;
             noise.variance += variance.r + variance.g + variance.b;
         }

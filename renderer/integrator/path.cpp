@@ -178,8 +178,10 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
         path.radiance += throughput * emitted_radiance(scene, *point, ray.dir, last);
 
         if (const auto& fibres = point->surface->fibres) {
-            if (depth == scene.settings.max_depth)
+            if (depth == scene.settings.max_depth) {
+                path.cut += mean(throughput);
                 break;
+            }
             CounterRng rng = sampler.stream();
             const auto passage = fibres->follow(point->position, ray.dir, rng);
             if (!passage)
@@ -203,9 +205,11 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
         const bool scatters = depth < scene.settings.max_depth;
         const Rgb unscattered = material.unscattered(eye);
         const float through = mean(unscattered);
-        const Rgb albedo = first || through > 0 ? material.albedo(eye) : Rgb(0);
+        const Rgb albedo = first || through > 0 || !scatters ? material.albedo(eye) : Rgb(0);
         if (first)
             path.albedo = albedo * point->reflectance();
+        if (!scatters) // even if the unscattered light goes on
+            path.cut += mean(throughput * albedo * point->reflectance());
         const float pass = chance_to_pass(through, scatters ? mean(albedo) : 0);
         const FoldedBsdf bsdf(material, eye, frame.to_local(point->geometric_normal));
         if (scatters && pass < 1)

@@ -36,7 +36,8 @@ FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, in
         return {path.radiance};
     const SurfacePoint& point = *path.first;
     return {path.radiance, true,          path.albedo,
-            point.frame.z, point.frame.y, rays.depth(point.position)};
+            point.frame.z, point.frame.y, rays.depth(point.position),
+            path.cut};
 }
 
 /// Brings tiles to the samples that are planned for each, all of them evenly.
@@ -142,7 +143,7 @@ void sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::T
     for (int y = tile.first.y; y < tile.end.y; ++y)
         for (int x = tile.first.x; x < tile.end.x; ++x)
             for (int sample = tile.samples; sample < until; ++sample)
-                film.add(x, y, take_sample(scene, rays, film.resolution().x, x, y, sample));
+                film.add(x, y, sample, take_sample(scene, rays, film.resolution().x, x, y, sample));
     tile.samples = until;
 }
 

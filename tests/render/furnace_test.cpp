@@ -49,6 +49,21 @@ TEST(Furnace, AConvexWhiteBodyVanishes) {
               4);
 }
 
+/// Inside a closed body of reflectance ρ paths have the weight ρⁿ after n events, to be scattered
+/// once more.
+TEST(Furnace, TellsWhatTheDepthCutsOff) {
+    TriangleMesh wall = tests::cube(2);
+    reverse_orientation(wall);
+    for (const int depth : {1, 2, 6}) {
+        const Scene inside({tests::surface(wall, tests::diffuse(0.5f))}, {},
+                           tests::parallel_camera({0, 0, 0}, {1, 0.2f, 0.3f}, 0.1f, 16),
+                           settings(256, depth));
+        EXPECT_NEAR(render(inside).cut_share() * std::pow(2, depth), 1, 0.05) << depth;
+    }
+    EXPECT_EQ(
+        render(furnace({tests::surface(tests::cube(0.7f), tests::diffuse(1))}, 1)).cut_share(), 0);
+}
+
 /// A cube with the normals of a sphere: up to 54° between shading and geometry.
 Surface rounded_cube(float reflectance) {
     TriangleMesh mesh = tests::cube(0.7f);

@@ -24,8 +24,9 @@ Scene lamp_scene(const RenderSettings& settings) {
                  settings);
 }
 
-RenderSettings to_error(double error, uint64_t seed) {
-    RenderSettings settings = tests::settings(0, 3, Sampler::Kind::independent, seed);
+RenderSettings to_error(double error, uint64_t seed,
+                        Sampler::Kind sampler = Sampler::Kind::independent) {
+    RenderSettings settings = tests::settings(0, 3, sampler, seed);
     settings.error = error;
     return settings;
 }
@@ -47,7 +48,7 @@ TEST(RenderError, IsReachedWhereSamplesAreSpentWhereTheyAreNeeded) {
     EXPECT_FALSE(reaches(even, error));
 }
 
-TEST(RenderError, IsHonest) {
+void expect_honest(Sampler::Kind sampler) {
     const double error = 0.2;
     const int pictures = tests::long_run() ? 400 : 24;
     const Image truth = render(lamp_scene(tests::settings(tests::long_run() ? 65536 : 8192, 3,
@@ -59,17 +60,19 @@ TEST(RenderError, IsHonest) {
     const double mean = std::accumulate(exact.begin(), exact.end(), 0.0) / pixels;
     const double of_truth =
         std::accumulate(variance.begin(), variance.end(), 0.0) / pixels / square(mean);
-    double claimed = 0, found = 0, offset = 0;
+    double claimed = 0, by_samples = 0, found = 0, offset = 0;
     for (int seed = 0; seed < pictures; ++seed) {
-        const Film film = render(lamp_scene(to_error(error, static_cast<uint64_t>(seed))));
+        const Film film = render(lamp_scene(to_error(error, static_cast<uint64_t>(seed), sampler)));
         claimed += square(film.noise().relative());
         const Image image = film.image();
         const std::vector<float>& values = *image.find("G");
+        const std::vector<float>& of_samples = *image.find("variance.G");
         double squares = 0;
         for (size_t i = 0; i < exact.size(); ++i) {
             const double difference = (values[i] - exact[i]) / mean;
             squares += square(difference) / pixels;
             offset += difference / pixels / pictures;
+            by_samples += of_samples[i] / square(mean) / pixels;
         }
         found += squares - of_truth;
     }
@@ -78,11 +81,20 @@ TEST(RenderError, IsHonest) {
     const double tolerance = tests::long_run() ? 0.02 : 0.05;
     EXPECT_NEAR(ratio, 1, tolerance);
     EXPECT_GT(std::abs(ratio / std::sqrt(2.0) - 1), tolerance); // a claim of half the variance
+    const double as_if_independent = std::sqrt(by_samples / found);
+    if (sampler == Sampler::Kind::sobol) { // the wrong twin: Sobol points taken as independent ones
+        EXPECT_GT(as_if_independent, 1 + 2 * tolerance);
+    }
     // Stopping by the noise does not pull the mean.
     const double standard_error = std::sqrt((square(error) / pictures + of_truth) / pixels);
     EXPECT_LT(std::abs(offset), 4 * standard_error);
-    std::printf("claimed over true: %.4f, offset of the mean %.2e\n", ratio, offset);
+    std::printf("claimed over true: %.4f (samples taken as independent %.4f), offset of the mean "
+                "%.2e\n",
+                ratio, as_if_independent, offset);
 }
+
+TEST(RenderError, IsHonest) { expect_honest(Sampler::Kind::independent); }
+TEST(RenderError, IsHonestOfSobolPoints) { expect_honest(Sampler::Kind::sobol); }
 
 TEST(RenderError, AStoppedPictureIsWhole) {
     RenderWatcher watcher;

@@ -14,12 +14,13 @@ using namespace rapport::tests;
 
 namespace {
 
-/// The 2-D points of one pixel: dimension pair `skip` of samples [first, first + count).
+/// The 2-D points of one pixel: dimension pair `skip` of `count` samples of even numbers, or of odd
+/// ones, from 2·first or 2·first + 1 on.
 std::vector<glm::vec2> points(Sampler::Kind kind, uint64_t pixel, uint32_t first, uint32_t count,
-                              int skip) {
+                              int skip, uint32_t half = 0) {
     std::vector<glm::vec2> points;
     for (uint32_t i = first; i < first + count; ++i) {
-        Sampler sampler(kind, 42, pixel, i);
+        Sampler sampler(kind, 42, pixel, 2 * i + half);
         for (int d = 0; d < skip; ++d)
             sampler.next_2d();
         points.push_back(sampler.next_2d());
@@ -72,10 +73,15 @@ TEST(Sampler, EveryPairOfDimensionsIsStratified) {
         for (const int skip : {0, 1, 5, 40})
             for (const int log2_count : {0, 2, 5, 8}) {
                 const uint32_t count = 1u << log2_count;
-                EXPECT_TRUE(
-                    is_stratified(points(Sampler::Kind::sobol, pixel, 0, count, skip), log2_count));
-                EXPECT_TRUE(is_stratified( // and so is every later block, as samples are added
-                    points(Sampler::Kind::sobol, pixel, 3 * count, count, skip), log2_count));
+                for (const uint32_t half : {0u, 1u}) {
+                    EXPECT_TRUE(is_stratified(
+                        points(Sampler::Kind::sobol, pixel, 0, count, skip, half), log2_count));
+                    EXPECT_TRUE(is_stratified( // and so is every later block, as samples are added
+                        points(Sampler::Kind::sobol, pixel, 3 * count, count, skip, half),
+                        log2_count));
+                }
+                EXPECT_NE(points(Sampler::Kind::sobol, pixel, 0, count, skip, 0),
+                          points(Sampler::Kind::sobol, pixel, 0, count, skip, 1));
             }
 }
 
@@ -87,7 +93,7 @@ TEST(Sampler, RandomNumbersAreNotStratified) {
 TEST(Sampler, SingleDimensionsAreStratified) {
     std::set<int> cells;
     for (uint32_t i = 0; i < 64; ++i) {
-        Sampler sampler(Sampler::Kind::sobol, 1, 9, i);
+        Sampler sampler(Sampler::Kind::sobol, 1, 9, 2 * i);
         sampler.next_2d();
         cells.insert(static_cast<int>(64 * sampler.next_1d()));
     }
