@@ -178,7 +178,7 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
         ->add_option("--accuracy", options->settings.accuracy,
                      "RMS error of the intensity distribution over its mean, per incident "
                      "direction (default 0.02)")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     CLI::Option* const incidence = command->add_option(
         "--incidence", options->incidence,
         "Measure only this direction of light, THETA,PHI in degrees (repeatable)");
@@ -189,14 +189,14 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
                          "Scan only the plane of light from this azimuth, in degrees (repeatable): "
                          "intensity over the angle of exit, to a .csv and an .svg")
             ->allow_extra_args(false)
-            ->check(CLI::Range(0.0, 360.0))
+            ->check(finite_number(0, 360))
             ->excludes(incidence);
     CLI::Option* const theta_in =
         command
             ->add_option("--theta-in", options->theta_in,
                          "Polar angle of the light in a scan, in degrees (repeatable)")
             ->allow_extra_args(false)
-            ->check(CLI::Range(0.0, 89.9))
+            ->check(finite_number(0, 89.9))
             ->needs(plane);
     plane->needs(theta_in);
     command->add_option("--side", options->side, "Side the light arrives on (default both)")
@@ -205,10 +205,12 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
         ->add_option("--realisations", options->realisations,
                      "Realisations of the cloth's random fibres that are averaged (default 4)")
         ->check(CLI::Range(1, 1024));
-    command->add_option("--max-rays", options->settings.max_paths,
-                        "Incident paths per direction at most");
+    command
+        ->add_option("--max-rays", options->settings.max_paths,
+                     "Incident paths per direction at most")
+        ->check(whole_number(1));
     command->add_option("--max-time", options->settings.max_seconds, "Seconds at most")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     command->add_flag("--resume", options->resume,
                       "Go on with a measurement that was interrupted, from OUTPUT.part (no scan)");
     command->callback([options, &common] { run(*options, common); });

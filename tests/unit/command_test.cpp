@@ -67,6 +67,33 @@ TEST_F(Command, RefusesAWrongCommandLine) {
     expect_refused({"info", "what.xyz"}, {"what.xyz"});
 }
 
+TEST_F(Command, RefusesNumbersThatAreNone) {
+    const std::string plain = kSource + "/scenes/cloths/viscose-plain.toml";
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"vgsp", plain, "--plane", "nan", "--theta-in", "30"},
+             {"vgsp", plain, "--plane", "0", "--theta-in", "nan"},
+             {"vgsp", plain, "--accuracy", "nan"},
+             {"vgsp", plain, "--accuracy", "inf"},
+             {"vgsp", plain, "--accuracy", "0"},
+             {"vgsp", plain, "--max-time", "nan"},
+             {"vgsp", plain, "--max-rays", "0"},
+             {"vgsp", plain, "--max-rays", "-1"},
+             {"vgsp", plain, "--seed", "-1"},
+             {"render", kSource + "/scenes/quickstart.pbrt", "--error", "nan"},
+             {"render", kSource + "/scenes/quickstart.pbrt", "--accuracy", "nan"},
+             {"diff", "a.exr", "b.exr", "--max", "nan"}}) {
+        const auto option = std::ranges::find_if(arguments, [&](const std::string& text) {
+            return text.starts_with("--") && text != "--plane" && text != "--theta-in";
+        });
+        const std::string name = option != arguments.end() ? *option
+                                 : arguments[3] == "nan"   ? "--plane"
+                                                           : "--theta-in";
+        const std::string found = arguments[3] == "nan" ? "nan" : arguments.back();
+        expect_refused(arguments,
+                       {"command line: " + name + ": expected", "found " + found + "\n"});
+    }
+}
+
 TEST_F(Command, RefusesFilesThatAreMissing) {
     for (const std::vector<std::string>& arguments :
          std::vector<std::vector<std::string>>{{"vgsp", "none.toml"},
