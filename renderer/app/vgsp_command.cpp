@@ -8,6 +8,8 @@
 #include "renderer/core/input_file.h"
 #include "vgsp/measure_cloth.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <fmt/format.h>
 #include <memory>
@@ -79,13 +81,24 @@ void warn_of_fewer(size_t realisations, const MicroElement& element, const VgspO
                    kMostMemory * 1e-9);
 }
 
-/// OUT.csv and OUT.svg, whichever of the two `output` names.
-void scan(const Cloth& cloth, const std::filesystem::path& output, const VgspOptions& options,
-          const GoniophotometerSettings& settings,
-          const std::function<void(const GoniophotometerProgress&)>& watch, bool quiet) {
+/// What is written: a scan's OUT.csv and OUT.svg, whichever of the two `output` names, or a table
+/// and its checkpoint.
+using OutputFiles = std::array<std::filesystem::path, 2>;
+OutputFiles output_files(const std::filesystem::path& output, bool scanning) {
+    OutputFiles files{output, output};
+    if (!scanning) {
+        files[1] += ".part";
+        return files;
+    }
     const std::string extension = lower_extension(output);
     if (extension != ".csv" && extension != ".svg")
         throw FileError("command line", "--output", "a .csv or .svg for a scan", output.string());
+    return {files[0].replace_extension(".csv"), files[1].replace_extension(".svg")};
+}
+
+void scan(const Cloth& cloth, const OutputFiles& files, const VgspOptions& options,
+          const GoniophotometerSettings& settings,
+          const std::function<void(const GoniophotometerProgress&)>& watch, bool quiet) {
     const Realisations realisations =
         build_realisations(cloth, {.seed = settings.seed}, options.realisations);
     warn_of_fewer(realisations.tracers.size(), realisations.first, options, quiet);
@@ -97,17 +110,18 @@ void scan(const Cloth& cloth, const std::filesystem::path& output, const VgspOpt
         accuracy = std::max(accuracy, each.accuracy);
         spread = std::max(spread, each.realisation_error.value_or(0));
     }
-    for (const auto& [name, text] :
-         {std::pair(".csv", scan_csv(scans)), {".svg", scan_svg(scans)}}) {
-        std::filesystem::path path = output;
-        path.replace_extension(name);
-        write_stream_atomically(path, [&](std::ofstream& stream) { stream << text; });
+    const auto& [csv, svg] = files;
+    // The one within the other: both appear, or none.
+    write_stream_atomically(csv, [&](std::ofstream& stream) {
+        stream << scan_csv(scans);
+        write_stream_atomically(svg, [&](std::ofstream& drawing) { drawing << scan_svg(scans); });
+    });
+    for (const std::filesystem::path& path : files)
         if (!quiet)
             fmt::print("{}: accuracy {:.4f} on {} angles of exit, {} incident directions{}\n",
                        path.string(), accuracy, 2 * PlaneScan::kAngles, scans.size(),
                        realisations.tracers.size() > 1 ? fmt::format(", realisation {:.4f}", spread)
                                                        : "");
-    }
 }
 
 void run(const VgspOptions& options, const CommonOptions& common) {
@@ -132,6 +146,8 @@ void run(const VgspOptions& options, const CommonOptions& common) {
     const std::filesystem::path output =
         options.output.empty() ? path.filename().replace_extension(scanning ? ".csv" : ".bsdf")
                                : std::filesystem::path(options.output);
+    const OutputFiles files = output_files(output, scanning);
+    std::ranges::for_each(files, check_writable);
     MeasuringLine line(common);
     const auto watch = [&](const GoniophotometerProgress& progress) {
         line.update(path, progress);
@@ -144,9 +160,8 @@ void run(const VgspOptions& options, const CommonOptions& common) {
                         "at a time",
                         "a scan");
     if (scanning)
-        return scan(cloth, output, options, measure.goniophotometer, watch, common.quiet);
-    measure.checkpoint = {output, options.resume};
-    measure.checkpoint.path += ".part";
+        return scan(cloth, files, options, measure.goniophotometer, watch, common.quiet);
+    measure.checkpoint = {files[1], options.resume};
     if (options.resume && !common.quiet && !std::filesystem::exists(measure.checkpoint.path))
         fmt::print(stderr, "{}: not there, so the measurement starts from the beginning\n",
                    measure.checkpoint.path.string());

@@ -94,6 +94,24 @@ TEST_F(Command, RefusesNumbersThatAreNone) {
     }
 }
 
+TEST_F(Command, RefusesPlacesThatCannotBeWrittenBeforeItTraces) {
+    const std::string plain = kSource + "/scenes/cloths/viscose-plain.toml";
+    for (const char* name : {"a.bsdf", "b.bsdf.part", "c.svg"})
+        std::filesystem::create_directory(folder_ / name);
+    // Each would go on for hours.
+    const auto table = [&](const std::string& output) -> std::vector<std::string> {
+        return {"vgsp", plain, "--accuracy", "1e-4", "-o", (folder_ / output).string()};
+    };
+    expect_refused(table("a.bsdf"), {"a.bsdf: expected a plain file", "found a folder"});
+    expect_refused(table("b.bsdf"), {"b.bsdf.part: expected a plain file"});
+    expect_refused(table("none/d.bsdf"), {"none/d.bsdf: expected an existing folder"});
+    for (const char* output : {"c.csv", "c.svg", "none/c.csv"}) {
+        std::vector<std::string> scan = table(output);
+        scan.insert(scan.end(), {"--plane", "0", "--theta-in", "30"});
+        expect_refused(scan, {"expected"});
+    }
+}
+
 TEST_F(Command, RefusesFilesThatAreMissing) {
     for (const std::vector<std::string>& arguments :
          std::vector<std::vector<std::string>>{{"vgsp", "none.toml"},
