@@ -5,6 +5,8 @@
 #include "renderer/core/text_hash.h"
 #include "vgsp/colour_solver.h"
 
+#include <algorithm>
+#include <chrono>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -172,7 +174,8 @@ Realisations build_realisations(const Cloth& cloth, const MicroElementOptions& g
 ClothMeasurement
 measure_cloth(const Cloth& cloth, const MeasureOptions& options,
               const std::function<void(const GoniophotometerProgress&)>& progress) {
-    const GoniophotometerSettings& settings = options.goniophotometer;
+    const auto start = std::chrono::steady_clock::now();
+    GoniophotometerSettings settings = options.goniophotometer;
     const MicroElementOptions geometry{.seed = settings.seed, .stopped = settings.stopped};
     Realisations realisations = build_realisations(cloth, geometry, options.realisations);
     ClothMeasurement result{options.incidence.empty()
@@ -185,6 +188,10 @@ measure_cloth(const Cloth& cloth, const MeasureOptions& options,
     const ClothOptics optics = cloth_optics(cloth, realisations.tracers[0], settings);
     result.table.metadata =
         metadata(cloth, result.element, geometry, optics, result.realisations, settings);
+    if (settings.max_seconds > 0) { // what is left of them, more than nothing
+        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+        settings.max_seconds = std::max(settings.max_seconds - spent.count(), 1e-9);
+    }
     result.counts = measure(realisations.tracers, optics.fibres, settings, result.table, progress,
                             options.checkpoint, optics.colourways);
     return result;

@@ -168,14 +168,17 @@ void run(const VgspOptions& options, const CommonOptions& common) {
     const ClothMeasurement result = measure_cloth(cloth, measure, watch);
     line.end();
     write_table(result.table, output);
-    std::filesystem::remove(measure.checkpoint.path);
+    if (!result.counts.out_of_time)
+        std::filesystem::remove(measure.checkpoint.path);
     if (common.quiet)
         return;
     warn_of_fewer(result.realisations, result.element, options, common.quiet);
     const BsdfTable& table = result.table;
-    fmt::print("{}: accuracy {:.4f} on {} bins, {} incident directions, {} paths\n{}\n",
+    fmt::print("{}: accuracy {:.4f} on {} bins, {} incident directions, {} paths{}\n{}\n",
                output.string(), table.largest_accuracy(), 2 * table.exits.bins(),
-               table.directions(), result.counts.paths, error_text(table.largest_error()));
+               table.directions(), result.counts.paths,
+               result.counts.out_of_time ? ", out of time; --resume goes on" : "",
+               error_text(table.largest_error()));
 }
 
 } // namespace
@@ -224,7 +227,10 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
         ->add_option("--max-rays", options->settings.max_paths,
                      "Incident paths per direction at most")
         ->check(whole_number(1));
-    command->add_option("--max-time", options->settings.max_seconds, "Seconds at most")
+    command
+        ->add_option("--max-time", options->settings.max_seconds,
+                     "Seconds at most; the table is written with the accuracy reached, and "
+                     "OUTPUT.part kept for --resume")
         ->check(positive_number());
     command->add_flag("--resume", options->resume,
                       "Go on with a measurement that was interrupted, from OUTPUT.part (no scan)");

@@ -204,6 +204,39 @@ TEST_F(Command, MeasuresTellsAndExportsATable) {
     EXPECT_NEAR(sum, from["R"][0].get<double>() + from["T"][0].get<double>(), 1e-5);
 }
 
+TEST_F(Command, GoesOnWithAMeasurementThatRanOutOfTime) {
+    const std::filesystem::path table = folder_ / "plain.bsdf", part = folder_ / "plain.bsdf.part";
+    std::vector<std::string> vgsp{"vgsp",
+                                  kSource + "/scenes/cloths/viscose-plain.toml",
+                                  "--incidence",
+                                  "30,45",
+                                  "--side",
+                                  "front",
+                                  "--accuracy",
+                                  "0.15",
+                                  "--threads",
+                                  "1",
+                                  "--realisations",
+                                  "1",
+                                  "-o",
+                                  table.string()};
+    const auto accuracy = [&] {
+        const tests::ProgramRun told = run_program({"info", table.string(), "--json"});
+        return nlohmann::json::parse(told.out)["accuracy"].get<double>();
+    };
+    std::vector<std::string> hurried = vgsp;
+    hurried.insert(hurried.end(), {"--max-time", "1e-3"});
+    const tests::ProgramRun first = run_program(hurried);
+    ASSERT_EQ(first.status, 0) << first.err;
+    EXPECT_NE(first.out.find("out of time"), std::string::npos) << first.out;
+    EXPECT_TRUE(std::filesystem::exists(part));
+    EXPECT_GT(accuracy(), 0.15);
+    vgsp.push_back("--resume");
+    EXPECT_EQ(run_program(vgsp).status, 0);
+    EXPECT_FALSE(std::filesystem::exists(part));
+    EXPECT_LE(accuracy(), 0.15);
+}
+
 TEST_F(Command, RendersTheSamePixelsWithAnyThreadsAndDiffTellsThemApart) {
     const std::string scene = file("scene.pbrt", R"(
         LookAt 0 0 3  0 0 0  0 1 0
