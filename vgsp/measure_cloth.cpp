@@ -155,12 +155,12 @@ ClothOptics cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
     return optics;
 }
 
-Realisations build_realisations(const Cloth& cloth, const MicroElementOptions& geometry,
-                                int count) {
+Realisations build_realisations(const Cloth& cloth, const MicroElementOptions& geometry, int count,
+                                double memory) {
     if (count < 1)
         throw std::invalid_argument("no realisation of the cloth");
     Realisations result{build_micro_element(cloth, geometry), {}};
-    while (count > 1 && count * result.first.memory > kMostMemory)
+    while (count > 1 && count * result.first.memory > memory)
         --count;
     result.tracers.emplace_back(result.first.fibres);
     for (int i = 1; i < count; ++i) {
@@ -177,7 +177,8 @@ measure_cloth(const Cloth& cloth, const MeasureOptions& options,
     const auto start = std::chrono::steady_clock::now();
     GoniophotometerSettings settings = options.goniophotometer;
     const MicroElementOptions geometry{.seed = settings.seed, .stopped = settings.stopped};
-    Realisations realisations = build_realisations(cloth, geometry, options.realisations);
+    Realisations realisations =
+        build_realisations(cloth, geometry, options.realisations, options.memory);
     ClothMeasurement result{options.incidence.empty()
                                 ? make_full_table(cloth.bands, options.front, options.back)
                                 : make_partial_table(cloth.bands, options.incidence),

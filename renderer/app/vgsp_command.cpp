@@ -22,10 +22,13 @@ struct VgspOptions {
     std::string cloth, draft, output, side = "both";
     std::vector<std::string> incidence;
     std::vector<double> planes, theta_in;
-    int realisations = 4;
+    std::optional<int> realisations; ///< kUsualRealisations, or as many as kUsualMemory holds
     bool resume = false;
     GoniophotometerSettings settings;
 };
+
+constexpr int kUsualRealisations = 4;
+constexpr double kUsualMemory = 1e9; ///< bytes, unless realisations are asked for
 
 /// "θ,φ" in degrees; θ is measured from the normal of the side that is asked for.
 IncidentDirection parse_incidence(const std::string& text, Side side) {
@@ -52,7 +55,8 @@ MeasureOptions measure_options(const VgspOptions& options, const CommonOptions& 
     MeasureOptions measure;
     measure.goniophotometer = options.settings;
     measure.goniophotometer.seed = common.seed;
-    measure.realisations = options.realisations;
+    measure.realisations = options.realisations.value_or(kUsualRealisations);
+    measure.memory = options.realisations ? kMostMemory : kUsualMemory;
     measure.front = options.side != "back";
     measure.back = options.side != "front";
     for (const Side side : {Side::front, Side::back})
@@ -73,12 +77,14 @@ std::vector<IncidentDirection> scan_incidence(const VgspOptions& options) {
     return incident;
 }
 
-void warn_of_fewer(size_t realisations, const MicroElement& element, const VgspOptions& options,
-                   bool quiet) {
-    if (!quiet && realisations < static_cast<size_t>(options.realisations))
-        fmt::print(stderr, "{}: {} of {} realisations: each takes {:.2g} GB, all may take {:.2g}\n",
-                   options.cloth, realisations, options.realisations, element.memory * 1e-9,
-                   kMostMemory * 1e-9);
+void warn_of_fewer(size_t realisations, const MicroElement& element, const MeasureOptions& measure,
+                   const VgspOptions& options, bool quiet) {
+    if (!quiet && realisations < static_cast<size_t>(measure.realisations))
+        fmt::print(stderr,
+                   "{}: {} of {} realisations: each takes {:.2g} GB, all may take {:.2g}{}\n",
+                   options.cloth, realisations, measure.realisations, element.memory * 1e-9,
+                   measure.memory * 1e-9,
+                   options.realisations ? "" : " unless --realisations asks for more");
 }
 
 /// What is written: a scan's OUT.csv and OUT.svg, whichever of the two `output` names, or a table
@@ -97,11 +103,12 @@ OutputFiles output_files(const std::filesystem::path& output, bool scanning) {
 }
 
 void scan(const Cloth& cloth, const OutputFiles& files, const VgspOptions& options,
-          const GoniophotometerSettings& settings,
+          const MeasureOptions& measure,
           const std::function<void(const GoniophotometerProgress&)>& watch, bool quiet) {
+    const GoniophotometerSettings& settings = measure.goniophotometer;
     const Realisations realisations =
-        build_realisations(cloth, {.seed = settings.seed}, options.realisations);
-    warn_of_fewer(realisations.tracers.size(), realisations.first, options, quiet);
+        build_realisations(cloth, {.seed = settings.seed}, measure.realisations, measure.memory);
+    warn_of_fewer(realisations.tracers.size(), realisations.first, measure, options, quiet);
     const std::vector<PlaneScan> scans = scan_planes(
         realisations.tracers, cloth_optics(cloth, realisations.tracers[0], settings).fibres,
         cloth.bands, scan_incidence(options), settings, watch);
@@ -160,7 +167,7 @@ void run(const VgspOptions& options, const CommonOptions& common) {
                         "at a time",
                         "a scan");
     if (scanning)
-        return scan(cloth, files, options, measure.goniophotometer, watch, common.quiet);
+        return scan(cloth, files, options, measure, watch, common.quiet);
     measure.checkpoint = {files[1], options.resume};
     if (options.resume && !common.quiet && !std::filesystem::exists(measure.checkpoint.path))
         fmt::print(stderr, "{}: not there, so the measurement starts from the beginning\n",
@@ -172,7 +179,7 @@ void run(const VgspOptions& options, const CommonOptions& common) {
         std::filesystem::remove(measure.checkpoint.path);
     if (common.quiet)
         return;
-    warn_of_fewer(result.realisations, result.element, options, common.quiet);
+    warn_of_fewer(result.realisations, result.element, measure, options, common.quiet);
     const BsdfTable& table = result.table;
     fmt::print("{}: accuracy {:.4f} on {} bins, {} incident directions, {} paths{}\n{}\n",
                output.string(), table.largest_accuracy(), 2 * table.exits.bins(),
@@ -220,8 +227,10 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
     command->add_option("--side", options->side, "Side the light arrives on (default both)")
         ->check(CLI::IsMember({"front", "back", "both"}));
     command
-        ->add_option("--realisations", options->realisations,
-                     "Realisations of the cloth's random fibres that are averaged (default 4)")
+        ->add_option(
+            "--realisations", options->realisations,
+            "Realisations of the cloth's random fibres that are averaged (default 4, or as many "
+            "as 1 GB holds)")
         ->check(CLI::Range(1, 1024));
     command
         ->add_option("--max-rays", options->settings.max_paths,
