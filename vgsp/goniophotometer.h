@@ -55,10 +55,12 @@ struct GoniophotometerCounts {
 /// How many paths a direction gets is planned before they are traced, by a pilot whose own paths
 /// are thrown away: to stop whenever the estimate looks good would make it look better than it is.
 /// Where the paths planned turn out to leave ε above what was asked, as many more are added as they
-/// themselves call for, until none is above; how little that flatters ε is measured
-/// (tests/statistical/goniophotometer_error_test.cpp). Only `max_seconds` makes the result depend
-/// on the machine: half of it may go to the pilot, and the first increment (at least one batch of
-/// each direction) is made even if the time is up. What was planned can be gone on with.
+/// themselves call for, until none is above. Here the statistics do decide the stop, against the
+/// rule of the pilot; over hundreds of seeds the claimed ε was 1.000 to 1.001 ± 0.006 of the true
+/// error, so that no bias is to be seen (tests/statistical/goniophotometer_error_test.cpp). Only
+/// `max_seconds` makes the result depend on the machine: half of it may go to the pilot, and the
+/// first increment (at least one batch of each direction) is made even if the time is up. What was
+/// planned can be gone on with.
 ///
 /// The pilot is the checkpoint's first increment. A checkpoint knows the run that it belongs to by
 /// `table.metadata`, which must tell all that decides the result, and the incident directions:
