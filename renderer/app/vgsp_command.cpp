@@ -166,6 +166,10 @@ void run(const VgspOptions& options, const CommonOptions& common) {
                         "a table: a scan keeps no checkpoint, ask for fewer --plane and --theta-in "
                         "at a time",
                         "a scan");
+    if (scanning && !cloth.colourways.empty())
+        throw FileError(path.string(), "colourway",
+                        "none for a scan: it tells of one set of dyes (--incidence of all)",
+                        fmt::format("{}", cloth.colourways.size()));
     if (scanning)
         return scan(cloth, files, options, measure, watch, common.quiet);
     measure.checkpoint = {files[1], options.resume};

@@ -128,6 +128,10 @@ TEST_F(Command, RefusesFilesThatAreMissing) {
 TEST_F(Command, RefusesClothsThatCannotBe) {
     expect_refused({"vgsp", cloth("fibres = 37", "fibers = 37")},
                    {"cloth.toml:", "fibers", "fibres"});
+    expect_refused({"vgsp",
+                    cloth("[warp]", "[colourway.dark]\nwarp.color = [0.1, 0.1, 0.1]\n[warp]"),
+                    "--plane", "0", "--theta-in", "30"},
+                   {"cloth.toml:colourway: expected none for a scan", "found 1"});
     expect_refused({"vgsp", cloth("ends_per_cm = 50", "ends_per_cm = 0")},
                    {"ends_per_cm", "found 0"});
     expect_refused({"vgsp", cloth("ends_per_cm = 50", "ends_per_cm = 150")}, {"cloth.toml", "150"});
