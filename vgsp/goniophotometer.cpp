@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -16,6 +17,8 @@ constexpr uint64_t kBatchPaths = 1024;
 constexpr uint64_t kPilotPaths = 1024;        ///< per direction, and twice as many again …
 constexpr uint64_t kPlannedPerPilotPath = 32; ///< … while each of them plans so many, …
 constexpr uint64_t kMostPilotPaths = 32768;   ///< … up to this
+constexpr double kPilotTime = 0.5;            ///< of max_seconds, at most
+constexpr size_t kFirstWave = 16;             ///< batches for each thread
 constexpr uint64_t kMostPaths = uint64_t{1} << 40;
 constexpr uint64_t kFirstPilotPath = kMostPaths;   ///< the pilot's numbers come after all others
 constexpr size_t kWaitingBytes = size_t{64} << 20; ///< of deposits that wait to be summed
@@ -43,8 +46,9 @@ class Run {
     double seconds() const {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     }
-    bool time_is_up() const {
-        return settings_.max_seconds > 0 && seconds() >= settings_.max_seconds;
+    /// Or a share of it.
+    bool time_is_up(double share = 1) const {
+        return settings_.max_seconds > 0 && seconds() >= share * settings_.max_seconds;
     }
     /// One for each direction and set of dyes in turn.
     std::vector<PathTally> empty_tallies() const {
@@ -67,7 +71,8 @@ class Run {
         return settings_.max_paths > 0 ? settings_.max_paths : kMostPaths;
     }
     /// How many paths each direction gets.
-    std::vector<uint64_t> plan() const;
+    std::vector<uint64_t>
+    plan(const std::function<void(const GoniophotometerProgress&)>& progress) const;
     /// More of them for the directions that have had theirs and claim a larger ε than was asked.
     void extend(std::vector<uint64_t>& planned, const std::vector<PathTally>& tallies) const;
     /// Of all that is planned.
@@ -82,6 +87,7 @@ class Run {
     /// Fills the table.
     GoniophotometerCounts write(const std::vector<PathTally>& tallies) const;
     GoniophotometerProgress state(const std::vector<PathTally>& tallies, double fraction) const;
+    GoniophotometerProgress pilot_state(const std::vector<PathTally>& pilots) const;
     /// Takes up an earlier run, if there is one to take up.
     bool resume(std::vector<uint64_t>& planned, std::vector<PathTally>& tallies) const;
     /// Writes the checkpoint, if one is wanted; the seconds it took.
@@ -119,10 +125,12 @@ uint64_t paths_needed(const PathTally& tally, double accuracy) {
     return needed < kMostPaths ? static_cast<uint64_t>(needed) : kMostPaths;
 }
 
-std::vector<uint64_t> Run::plan() const {
+std::vector<uint64_t>
+Run::plan(const std::function<void(const GoniophotometerProgress&)>& progress) const {
     std::vector<uint64_t> planned(table_.directions(), most_paths());
     if (most_paths() <= kPilotPaths)
         return planned;
+    const auto out_of_time = [&] { return time_is_up(kPilotTime); };
     std::vector<PathTally> pilots = empty_tallies();
     std::vector<Task> tasks;
     do {
@@ -132,14 +140,21 @@ std::vector<uint64_t> Run::plan() const {
             if (done == 0 || until <= std::min(kMostPilotPaths, planned[d] / kPlannedPerPilotPath))
                 add_tasks(tasks, d, kFirstPilotPath + done, kFirstPilotPath + until);
         }
-        trace(tasks, pilots);
+        const size_t wave = kFirstWave * thread_count();
+        for (std::span<const Task> left = tasks; !left.empty() && !out_of_time();) {
+            const std::span<const Task> some = left.first(std::min(left.size(), wave));
+            trace(some, pilots);
+            left = left.subspan(some.size());
+            if (progress)
+                progress(pilot_state(pilots));
+        }
         for (size_t d = 0; d < planned.size(); ++d) {
             planned[d] = kBatchPaths;
             for (const PathTally& pilot : of_direction(pilots, d))
                 planned[d] = std::max(planned[d], paths_needed(pilot, settings_.accuracy));
             planned[d] = std::min(most_paths(), planned[d]);
         }
-    } while (!tasks.empty());
+    } while (!tasks.empty() && !out_of_time());
     return planned;
 }
 
@@ -195,6 +210,16 @@ GoniophotometerProgress Run::state(const std::vector<PathTally>& tallies, double
     return state;
 }
 
+GoniophotometerProgress Run::pilot_state(const std::vector<PathTally>& pilots) const {
+    double done = 0;
+    for (size_t d = 0; d < table_.directions(); ++d)
+        done += static_cast<double>(pilots[d * dyes_].counts().paths);
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    const double now = seconds();
+    const double left = settings_.max_seconds > 0 ? settings_.max_seconds - now : kUnknown;
+    return {kUnknown, 0, now, std::max(left, 0.0), done / now, true};
+}
+
 bool Run::resume(std::vector<uint64_t>& planned, std::vector<PathTally>& tallies) const {
     if (!checkpoint_.resume || !std::filesystem::exists(checkpoint_.path))
         return false;
@@ -226,14 +251,14 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
     std::vector<uint64_t> planned;
     std::vector<PathTally> tallies = empty_tallies();
     if (!resume(planned, tallies)) {
-        planned = plan();
+        planned = plan(progress);
         save(planned, tallies);
     }
     for (size_t d = 0; d < planned.size(); ++d)
         resumed_paths_ += tallies[d * dyes_].counts().paths;
     double share = resumed_fraction_ = share_done(planned, tallies);
     tracing_since_ = seconds();
-    double wave = 16.0 * thread_count(); // batches
+    double wave = static_cast<double>(kFirstWave * thread_count());
     for (bool first = true; share < 1 && (first || !time_is_up()); first = false) {
         const double wave_since = seconds();
         const double total = std::accumulate(planned.begin(), planned.end(), 0.0);
@@ -264,7 +289,9 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
             wave = std::min(wave, wave * (settings_.max_seconds - seconds()) / took);
         wave = std::max(wave, 4.0 * thread_count());
     }
-    return write(tallies);
+    GoniophotometerCounts counts = write(tallies);
+    counts.out_of_time = share < 1;
+    return counts;
 }
 
 GoniophotometerCounts Run::write(const std::vector<PathTally>& tallies) const {

@@ -23,19 +23,21 @@ struct GoniophotometerSettings {
     StopSignal stopped = nullptr; ///< asked before each batch of paths
 };
 
-/// Told after each increment of the run.
+/// Told after each increment of the run, and of the pilot that plans it.
 struct GoniophotometerProgress {
-    double accuracy; ///< largest ε over all directions so far
-    double fraction; ///< of the expected work, [0, 1]
+    double accuracy; ///< largest ε over all directions so far; in the pilot infinite
+    double fraction; ///< of the expected work, [0, 1]; in the pilot 0, for that is not yet known
     double seconds, seconds_left;
     double paths_per_second;
+    bool pilot = false;
 };
 
 /// Where the paths of one run went, over all incident directions; the pilot's are not in it.
 struct GoniophotometerCounts {
     uint64_t paths = 0, events = 0, overlaps = 0;
-    uint64_t capped = 0; ///< out of events
-    uint64_t lost = 0;   ///< of these, lost among the fibres (FibreTracer::Flight::lost)
+    uint64_t capped = 0;      ///< out of events
+    uint64_t lost = 0;        ///< of these, lost among the fibres (FibreTracer::Flight::lost)
+    bool out_of_time = false; ///< more were planned: the checkpoint is worth going on from
 };
 
 /// Measures the scattering of any periodic assembly of fibres for the incident directions and
@@ -53,10 +55,12 @@ struct GoniophotometerCounts {
 /// How many paths a direction gets is planned before they are traced, by a pilot whose own paths
 /// are thrown away: to stop whenever the estimate looks good would make it look better than it is.
 /// Where the paths planned turn out to leave ε above what was asked, as many more are added as they
-/// themselves call for, until none is above; how little that flatters ε is measured
-/// (tests/statistical/goniophotometer_error_test.cpp). Only `max_seconds` makes the result depend
-/// on the machine; the first increment (at least one batch of each direction) is made even if the
-/// time is up.
+/// themselves call for, until none is above. Here the statistics do decide the stop, against the
+/// rule of the pilot; over hundreds of seeds the claimed ε was 1.000 to 1.001 ± 0.006 of the true
+/// error, so that no bias is to be seen (tests/statistical/goniophotometer_error_test.cpp). Only
+/// `max_seconds` makes the result depend on the machine: half of it may go to the pilot, and the
+/// first increment (at least one batch of each direction) is made even if the time is up. What was
+/// planned can be gone on with.
 ///
 /// The pilot is the checkpoint's first increment. A checkpoint knows the run that it belongs to by
 /// `table.metadata`, which must tell all that decides the result, and the incident directions:

@@ -5,6 +5,8 @@
 #include "renderer/core/text_hash.h"
 #include "vgsp/colour_solver.h"
 
+#include <algorithm>
+#include <chrono>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -153,12 +155,12 @@ ClothOptics cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
     return optics;
 }
 
-Realisations build_realisations(const Cloth& cloth, const MicroElementOptions& geometry,
-                                int count) {
+Realisations build_realisations(const Cloth& cloth, const MicroElementOptions& geometry, int count,
+                                double memory) {
     if (count < 1)
         throw std::invalid_argument("no realisation of the cloth");
     Realisations result{build_micro_element(cloth, geometry), {}};
-    while (count > 1 && count * result.first.memory > kMostMemory)
+    while (count > 1 && count * result.first.memory > memory)
         --count;
     result.tracers.emplace_back(result.first.fibres);
     for (int i = 1; i < count; ++i) {
@@ -172,9 +174,11 @@ Realisations build_realisations(const Cloth& cloth, const MicroElementOptions& g
 ClothMeasurement
 measure_cloth(const Cloth& cloth, const MeasureOptions& options,
               const std::function<void(const GoniophotometerProgress&)>& progress) {
-    const GoniophotometerSettings& settings = options.goniophotometer;
+    const auto start = std::chrono::steady_clock::now();
+    GoniophotometerSettings settings = options.goniophotometer;
     const MicroElementOptions geometry{.seed = settings.seed, .stopped = settings.stopped};
-    Realisations realisations = build_realisations(cloth, geometry, options.realisations);
+    Realisations realisations =
+        build_realisations(cloth, geometry, options.realisations, options.memory);
     ClothMeasurement result{options.incidence.empty()
                                 ? make_full_table(cloth.bands, options.front, options.back)
                                 : make_partial_table(cloth.bands, options.incidence),
@@ -185,6 +189,10 @@ measure_cloth(const Cloth& cloth, const MeasureOptions& options,
     const ClothOptics optics = cloth_optics(cloth, realisations.tracers[0], settings);
     result.table.metadata =
         metadata(cloth, result.element, geometry, optics, result.realisations, settings);
+    if (settings.max_seconds > 0) { // what is left of them, more than nothing
+        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+        settings.max_seconds = std::max(settings.max_seconds - spent.count(), 1e-9);
+    }
     result.counts = measure(realisations.tracers, optics.fibres, settings, result.table, progress,
                             options.checkpoint, optics.colourways);
     return result;

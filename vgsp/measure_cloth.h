@@ -16,9 +16,10 @@ struct Realisations {
     std::vector<kernel::FibreTracer> tracers;
 };
 
-/// At most `count` ≥ 1, fewer where kMostMemory does not hold as many. The first has the seed
+/// At most `count` ≥ 1, fewer where `memory` [bytes] does not hold as many. The first has the seed
 /// given. FileError (at the cloth's path) for a cloth that cannot exist.
-Realisations build_realisations(const Cloth& cloth, const MicroElementOptions& geometry, int count);
+Realisations build_realisations(const Cloth& cloth, const MicroElementOptions& geometry, int count,
+                                double memory = kMostMemory);
 
 struct MeasureOptions {
     GoniophotometerSettings goniophotometer;
@@ -29,6 +30,7 @@ struct MeasureOptions {
     /// measurement, like its accuracy, and none of the cloth, whose file tells what they have in
     /// common.
     int realisations = 1;
+    double memory = kMostMemory; ///< that they may take together [bytes]
     Checkpoint checkpoint{};
 };
 

@@ -18,7 +18,6 @@ constexpr uint64_t kChunkPaths = 64 * kBatchPaths; ///< between two looks at the
 constexpr uint64_t kPilotPaths = 1 << 16;          ///< and as many again …
 constexpr uint64_t kMostPilotPaths = 1 << 18;      ///< … up to this, …
 constexpr double kPilotHits = 2000;                ///< … until the detector has seen so many
-constexpr double kPlannedSigmas = 3;
 constexpr uint64_t kMostPaths = uint64_t{1} << 40;
 constexpr uint64_t kFirstPilotPath = kMostPaths; ///< the pilot's numbers come after all others
 
@@ -107,6 +106,18 @@ struct Tally {
     uint64_t paths = 0;                    ///< of all realisations, in each group
 };
 
+uint64_t most_paths(const GoniophotometerSettings& settings) {
+    return settings.max_paths > 0 ? settings.max_paths : kMostPaths;
+}
+
+/// In whole batches, going by those of a tally that has seen light.
+uint64_t paths_needed(const Tally& tally, const GoniophotometerSettings& settings) {
+    const double batches = tally.error_of_one_path() / square(settings.accuracy) / kBatchPaths;
+    const double most = static_cast<double>(kMostPaths / kBatchPaths);
+    return std::min(most_paths(settings),
+                    static_cast<uint64_t>(std::min(std::floor(batches) + 1, most)) * kBatchPaths);
+}
+
 /// The bin that sees light travelling along `direction`, if any does.
 std::optional<size_t> seen_in(const glm::dvec3& direction, const IncidentDirection& incident) {
     const double c = std::cos(incident.phi), s = std::sin(incident.phi);
@@ -143,22 +154,18 @@ class Detector {
             tally += batch;
     }
 
-    /// How many paths reach the accuracy asked for.
-    uint64_t plan(const GoniophotometerSettings& settings) const {
-        const uint64_t most = settings.max_paths > 0 ? settings.max_paths : kMostPaths;
+    /// How many paths reach the accuracy asked for, going by those of a pilot.
+    uint64_t plan(const GoniophotometerSettings& settings,
+                  const std::function<bool()>& time_is_up) const {
+        const uint64_t most = most_paths(settings);
         if (most <= kPilotPaths)
             return most;
         Tally pilot = empty_tally();
-        while (pilot.paths < kMostPilotPaths && pilot.hits() < kPilotHits)
+        while (pilot.paths < kMostPilotPaths && pilot.hits() < kPilotHits && !time_is_up())
             trace(kFirstPilotPath + pilot.paths, kPilotPaths, pilot);
         if (pilot.hits() == 0)
             return std::min(most, kMostPilotPaths);
-        const double needed = pilot.error_of_one_path() *
-                              (1 + kPlannedSigmas / std::sqrt(pilot.hits())) /
-                              square(settings.accuracy);
-        return std::min(most, static_cast<uint64_t>(std::clamp(std::ceil(needed),
-                                                               static_cast<double>(kBatchPaths),
-                                                               static_cast<double>(kMostPaths))));
+        return paths_needed(pilot, settings);
     }
 
   private:
@@ -259,14 +266,16 @@ scan_planes(std::span<const kernel::FibreTracer> realisations, std::span<const F
     double worst = 0, traced = 0;
     for (size_t d = 0; d < incident.size(); ++d) {
         const Detector detector(tracers, incident[d], d, settings.seed);
-        const uint64_t planned = detector.plan(settings);
         const double until = settings.max_seconds * (static_cast<double>(d) + 1) / directions;
+        const auto time_is_up = [&] { return settings.max_seconds > 0 && seconds() >= until; };
+        uint64_t planned = detector.plan(settings, time_is_up);
         Tally tally = detector.empty_tally();
-        while (tally.paths < planned &&
-               (tally.paths == 0 || settings.max_seconds <= 0 || seconds() < until)) {
+        while (tally.paths < planned && (tally.paths == 0 || !time_is_up())) {
             const uint64_t count = std::min(kChunkPaths, planned - tally.paths);
             detector.trace(tally.paths, count, tally);
             traced += static_cast<double>(count);
+            if (tally.paths == planned && tally.accuracy() > settings.accuracy)
+                planned = std::max(planned, paths_needed(tally, settings));
             if (!progress)
                 continue;
             const double share = static_cast<double>(tally.paths) / static_cast<double>(planned);

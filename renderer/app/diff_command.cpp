@@ -50,7 +50,7 @@ void add_diff_command(CLI::App& app, int& status) {
         ->add_option("--max", options->max_error,
                      "Largest |difference| of R, G or B to accept (default: a test against the "
                      "images' variance where both have it, else 0)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(non_negative_number());
     command->callback([options, &status] {
         if (!same(*options))
             status = 1;

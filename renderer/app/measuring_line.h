@@ -20,10 +20,12 @@ class MeasuringLine {
             return;
         if (!line_)
             line_.emplace(std::cerr, "measuring " + cloth.filename().string());
-        line_->update(progress.fraction,
-                      fmt::format("accuracy {:.4f}, {:.0f} k paths/s", progress.accuracy,
-                                  1e-3 * progress.paths_per_second),
-                      progress.seconds_left);
+        const std::string reached =
+            progress.pilot ? "pilot" : fmt::format("accuracy {:.4f}", progress.accuracy);
+        line_->update(
+            progress.fraction,
+            fmt::format("{}, {:.0f} k paths/s", reached, 1e-3 * progress.paths_per_second),
+            progress.seconds_left);
     }
     void end() { line_.reset(); }
 

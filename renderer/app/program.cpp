@@ -5,9 +5,12 @@
 #include "renderer/core/parallel.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <exception>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <functional>
 #include <new>
 #include <unistd.h>
 #include <vector>
@@ -16,6 +19,43 @@ namespace rapport {
 
 bool shows_progress(const CommonOptions& common) {
     return !common.quiet && isatty(STDERR_FILENO) != 0;
+}
+
+namespace {
+
+CLI::Validator number(const std::string& expected, const std::function<bool(double)>& fits) {
+    return {[=](const std::string& text) {
+                double value = 0;
+                return CLI::detail::lexical_cast(text, value) && std::isfinite(value) && fits(value)
+                           ? std::string()
+                           : fmt::format("expected {}, found {}", expected, text);
+            },
+            expected};
+}
+
+} // namespace
+
+CLI::Validator finite_number(double least, double most) {
+    return number(fmt::format("a number from {} to {}", least, most),
+                  [=](double value) { return value >= least && value <= most; });
+}
+CLI::Validator positive_number() {
+    return number("a number above 0", [](double value) { return value > 0; });
+}
+CLI::Validator non_negative_number() {
+    return number("a number of 0 or more", [](double value) { return value >= 0; });
+}
+CLI::Validator whole_number(uint64_t least) {
+    const std::string expected = fmt::format("a whole number of {} or more", least);
+    return {[=](const std::string& text) {
+                uint64_t value = 0;
+                const char* const end = text.data() + text.size();
+                const auto [next, error] = std::from_chars(text.data(), end, value);
+                return error == std::errc() && next == end && value >= least
+                           ? std::string()
+                           : fmt::format("expected {}, found {}", expected, text);
+            },
+            expected};
 }
 
 namespace {
@@ -49,7 +89,8 @@ int run_program(int argc, char** argv) {
     int status = 0;
     app.add_option("--threads", common.threads, "Threads to use (default: all)")
         ->check(CLI::Range(1, 1024));
-    app.add_option("--seed", common.seed, "Seed of all random numbers (default 0)");
+    app.add_option("--seed", common.seed, "Seed of all random numbers (default 0)")
+        ->check(whole_number(0));
     app.add_flag("--quiet", common.quiet, "Only results and errors");
     app.parse_complete_callback([&common] { set_thread_count(common.threads); });
 

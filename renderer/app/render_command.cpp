@@ -206,7 +206,7 @@ void add_render_command(CLI::App& app, const CommonOptions& common) {
     command
         ->add_option("--error", options->error,
                      "Relative noise to reach in the picture and in 95 % of its tiles")
-        ->check(CLI::Range(1e-4, 1.0))
+        ->check(finite_number(1e-4, 1.0))
         ->excludes(samples);
     command
         ->add_option("--aov", options->aov,
@@ -215,7 +215,7 @@ void add_render_command(CLI::App& app, const CommonOptions& common) {
     command
         ->add_option("--accuracy", options->accuracy,
                      "Accuracy of a cloth that is measured on the way (default 0.2)")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     command->add_flag("--resume", options->resume,
                       "Go on with a picture that was interrupted, from OUTPUT.part");
     command->callback([options, &common] { run(*options, common); });

@@ -8,6 +8,8 @@
 #include "renderer/core/input_file.h"
 #include "vgsp/measure_cloth.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <fmt/format.h>
 #include <memory>
@@ -20,10 +22,13 @@ struct VgspOptions {
     std::string cloth, draft, output, side = "both";
     std::vector<std::string> incidence;
     std::vector<double> planes, theta_in;
-    int realisations = 4;
+    std::optional<int> realisations; ///< kUsualRealisations, or as many as kUsualMemory holds
     bool resume = false;
     GoniophotometerSettings settings;
 };
+
+constexpr int kUsualRealisations = 4;
+constexpr double kUsualMemory = 1e9; ///< bytes, unless realisations are asked for
 
 /// "θ,φ" in degrees; θ is measured from the normal of the side that is asked for.
 IncidentDirection parse_incidence(const std::string& text, Side side) {
@@ -50,7 +55,8 @@ MeasureOptions measure_options(const VgspOptions& options, const CommonOptions& 
     MeasureOptions measure;
     measure.goniophotometer = options.settings;
     measure.goniophotometer.seed = common.seed;
-    measure.realisations = options.realisations;
+    measure.realisations = options.realisations.value_or(kUsualRealisations);
+    measure.memory = options.realisations ? kMostMemory : kUsualMemory;
     measure.front = options.side != "back";
     measure.back = options.side != "front";
     for (const Side side : {Side::front, Side::back})
@@ -71,24 +77,38 @@ std::vector<IncidentDirection> scan_incidence(const VgspOptions& options) {
     return incident;
 }
 
-void warn_of_fewer(size_t realisations, const MicroElement& element, const VgspOptions& options,
-                   bool quiet) {
-    if (!quiet && realisations < static_cast<size_t>(options.realisations))
-        fmt::print(stderr, "{}: {} of {} realisations: each takes {:.2g} GB, all may take {:.2g}\n",
-                   options.cloth, realisations, options.realisations, element.memory * 1e-9,
-                   kMostMemory * 1e-9);
+void warn_of_fewer(size_t realisations, const MicroElement& element, const MeasureOptions& measure,
+                   const VgspOptions& options, bool quiet) {
+    if (!quiet && realisations < static_cast<size_t>(measure.realisations))
+        fmt::print(stderr,
+                   "{}: {} of {} realisations: each takes {:.2g} GB, all may take {:.2g}{}\n",
+                   options.cloth, realisations, measure.realisations, element.memory * 1e-9,
+                   measure.memory * 1e-9,
+                   options.realisations ? "" : " unless --realisations asks for more");
 }
 
-/// OUT.csv and OUT.svg, whichever of the two `output` names.
-void scan(const Cloth& cloth, const std::filesystem::path& output, const VgspOptions& options,
-          const GoniophotometerSettings& settings,
-          const std::function<void(const GoniophotometerProgress&)>& watch, bool quiet) {
+/// What is written: a scan's OUT.csv and OUT.svg, whichever of the two `output` names, or a table
+/// and its checkpoint.
+using OutputFiles = std::array<std::filesystem::path, 2>;
+OutputFiles output_files(const std::filesystem::path& output, bool scanning) {
+    OutputFiles files{output, output};
+    if (!scanning) {
+        files[1] += ".part";
+        return files;
+    }
     const std::string extension = lower_extension(output);
     if (extension != ".csv" && extension != ".svg")
         throw FileError("command line", "--output", "a .csv or .svg for a scan", output.string());
+    return {files[0].replace_extension(".csv"), files[1].replace_extension(".svg")};
+}
+
+void scan(const Cloth& cloth, const OutputFiles& files, const VgspOptions& options,
+          const MeasureOptions& measure,
+          const std::function<void(const GoniophotometerProgress&)>& watch, bool quiet) {
+    const GoniophotometerSettings& settings = measure.goniophotometer;
     const Realisations realisations =
-        build_realisations(cloth, {.seed = settings.seed}, options.realisations);
-    warn_of_fewer(realisations.tracers.size(), realisations.first, options, quiet);
+        build_realisations(cloth, {.seed = settings.seed}, measure.realisations, measure.memory);
+    warn_of_fewer(realisations.tracers.size(), realisations.first, measure, options, quiet);
     const std::vector<PlaneScan> scans = scan_planes(
         realisations.tracers, cloth_optics(cloth, realisations.tracers[0], settings).fibres,
         cloth.bands, scan_incidence(options), settings, watch);
@@ -97,17 +117,18 @@ void scan(const Cloth& cloth, const std::filesystem::path& output, const VgspOpt
         accuracy = std::max(accuracy, each.accuracy);
         spread = std::max(spread, each.realisation_error.value_or(0));
     }
-    for (const auto& [name, text] :
-         {std::pair(".csv", scan_csv(scans)), {".svg", scan_svg(scans)}}) {
-        std::filesystem::path path = output;
-        path.replace_extension(name);
-        write_stream_atomically(path, [&](std::ofstream& stream) { stream << text; });
+    const auto& [csv, svg] = files;
+    // The one within the other: both appear, or none.
+    write_stream_atomically(csv, [&](std::ofstream& stream) {
+        stream << scan_csv(scans);
+        write_stream_atomically(svg, [&](std::ofstream& drawing) { drawing << scan_svg(scans); });
+    });
+    for (const std::filesystem::path& path : files)
         if (!quiet)
             fmt::print("{}: accuracy {:.4f} on {} angles of exit, {} incident directions{}\n",
                        path.string(), accuracy, 2 * PlaneScan::kAngles, scans.size(),
                        realisations.tracers.size() > 1 ? fmt::format(", realisation {:.4f}", spread)
                                                        : "");
-    }
 }
 
 void run(const VgspOptions& options, const CommonOptions& common) {
@@ -132,6 +153,8 @@ void run(const VgspOptions& options, const CommonOptions& common) {
     const std::filesystem::path output =
         options.output.empty() ? path.filename().replace_extension(scanning ? ".csv" : ".bsdf")
                                : std::filesystem::path(options.output);
+    const OutputFiles files = output_files(output, scanning);
+    std::ranges::for_each(files, check_writable);
     MeasuringLine line(common);
     const auto watch = [&](const GoniophotometerProgress& progress) {
         line.update(path, progress);
@@ -143,24 +166,30 @@ void run(const VgspOptions& options, const CommonOptions& common) {
                         "a table: a scan keeps no checkpoint, ask for fewer --plane and --theta-in "
                         "at a time",
                         "a scan");
+    if (scanning && !cloth.colourways.empty())
+        throw FileError(path.string(), "colourway",
+                        "none for a scan: it tells of one set of dyes (--incidence of all)",
+                        fmt::format("{}", cloth.colourways.size()));
     if (scanning)
-        return scan(cloth, output, options, measure.goniophotometer, watch, common.quiet);
-    measure.checkpoint = {output, options.resume};
-    measure.checkpoint.path += ".part";
+        return scan(cloth, files, options, measure, watch, common.quiet);
+    measure.checkpoint = {files[1], options.resume};
     if (options.resume && !common.quiet && !std::filesystem::exists(measure.checkpoint.path))
         fmt::print(stderr, "{}: not there, so the measurement starts from the beginning\n",
                    measure.checkpoint.path.string());
     const ClothMeasurement result = measure_cloth(cloth, measure, watch);
     line.end();
     write_table(result.table, output);
-    std::filesystem::remove(measure.checkpoint.path);
+    if (!result.counts.out_of_time)
+        std::filesystem::remove(measure.checkpoint.path);
     if (common.quiet)
         return;
-    warn_of_fewer(result.realisations, result.element, options, common.quiet);
+    warn_of_fewer(result.realisations, result.element, measure, options, common.quiet);
     const BsdfTable& table = result.table;
-    fmt::print("{}: accuracy {:.4f} on {} bins, {} incident directions, {} paths\n{}\n",
+    fmt::print("{}: accuracy {:.4f} on {} bins, {} incident directions, {} paths{}\n{}\n",
                output.string(), table.largest_accuracy(), 2 * table.exits.bins(),
-               table.directions(), result.counts.paths, error_text(table.largest_error()));
+               table.directions(), result.counts.paths,
+               result.counts.out_of_time ? ", out of time; --resume goes on" : "",
+               error_text(table.largest_error()));
 }
 
 } // namespace
@@ -178,7 +207,7 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
         ->add_option("--accuracy", options->settings.accuracy,
                      "RMS error of the intensity distribution over its mean, per incident "
                      "direction (default 0.02)")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     CLI::Option* const incidence = command->add_option(
         "--incidence", options->incidence,
         "Measure only this direction of light, THETA,PHI in degrees (repeatable)");
@@ -189,26 +218,33 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
                          "Scan only the plane of light from this azimuth, in degrees (repeatable): "
                          "intensity over the angle of exit, to a .csv and an .svg")
             ->allow_extra_args(false)
-            ->check(CLI::Range(0.0, 360.0))
+            ->check(finite_number(0, 360))
             ->excludes(incidence);
     CLI::Option* const theta_in =
         command
             ->add_option("--theta-in", options->theta_in,
                          "Polar angle of the light in a scan, in degrees (repeatable)")
             ->allow_extra_args(false)
-            ->check(CLI::Range(0.0, 89.9))
+            ->check(finite_number(0, 89.9))
             ->needs(plane);
     plane->needs(theta_in);
     command->add_option("--side", options->side, "Side the light arrives on (default both)")
         ->check(CLI::IsMember({"front", "back", "both"}));
     command
-        ->add_option("--realisations", options->realisations,
-                     "Realisations of the cloth's random fibres that are averaged (default 4)")
+        ->add_option(
+            "--realisations", options->realisations,
+            "Realisations of the cloth's random fibres that are averaged (default 4, or as many "
+            "as 1 GB holds)")
         ->check(CLI::Range(1, 1024));
-    command->add_option("--max-rays", options->settings.max_paths,
-                        "Incident paths per direction at most");
-    command->add_option("--max-time", options->settings.max_seconds, "Seconds at most")
-        ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--max-rays", options->settings.max_paths,
+                     "Incident paths per direction at most")
+        ->check(whole_number(1));
+    command
+        ->add_option("--max-time", options->settings.max_seconds,
+                     "Seconds at most; the table is written with the accuracy reached, and "
+                     "OUTPUT.part kept for --resume")
+        ->check(positive_number());
     command->add_flag("--resume", options->resume,
                       "Go on with a measurement that was interrupted, from OUTPUT.part (no scan)");
     command->callback([options, &common] { run(*options, common); });

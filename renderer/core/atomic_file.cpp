@@ -65,6 +65,12 @@ void write_atomically(const fs::path& target, const std::function<void(const fs:
         throw FileError(target.string(), "", "a file that can be replaced", error.message());
 }
 
+void check_writable(const fs::path& target) {
+    const fs::path temporary = temporary_beside(target);
+    create(temporary, target);
+    const TemporaryGuard guard(temporary);
+}
+
 void write_stream_atomically(const fs::path& target,
                              const std::function<void(std::ofstream&)>& write) {
     write_atomically(target, [&](const fs::path& temporary) {

@@ -13,7 +13,10 @@ namespace rapport {
 void write_atomically(const std::filesystem::path& target,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// The same through a binary stream; a disk that fills up is noticed, and is a FileError.
+/// The same FileErrors where `target` cannot be written, before the work that is to fill it.
+void check_writable(const std::filesystem::path& target);
+
+/// write_atomically() through a binary stream; a disk that fills up is noticed, and is a FileError.
 void write_stream_atomically(const std::filesystem::path& target,
                              const std::function<void(std::ofstream& stream)>& write);
 

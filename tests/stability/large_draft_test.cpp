@@ -2,10 +2,10 @@
 
 #include "renderer/core/error.h"
 #include "tests/support/long_run.h"
+#include "tests/support/peak_memory.h"
 #include "tests/support/scattering.h"
 #include "vgsp/weave.h"
 
-#include <fstream>
 #include <gtest/gtest.h>
 
 // Drafts of hundreds of ends and picks: within the memory that is promised, or refused with what
@@ -15,15 +15,6 @@ namespace rapport {
 namespace {
 
 constexpr double kMostMemory = 4e9;
-
-/// The most memory that this process has held so far [bytes].
-double peak_memory() {
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);)
-        if (line.starts_with("VmHWM:"))
-            return 1024 * std::stod(line.substr(6));
-    return 0;
-}
 
 /// A draft that repeats nowhere: each end passes under one pick of twelve, at places that a
 /// generator scatters.
@@ -46,7 +37,7 @@ Cloth monofilament_cloth(int size) {
 TEST(LargeDraft, IsMeasuredWithinTheMemoryPromised) {
     const int size = tests::long_run() ? 600 : 150;
     const Cloth cloth = monofilament_cloth(size);
-    const double before = peak_memory();
+    const double before = tests::peak_memory();
     const MicroElement element = build_micro_element(cloth);
     EXPECT_EQ(element.fibres.chains.size(), 2u * size);
     const double promised = kernel::FibreTracer::memory(double(element.segments),
@@ -61,7 +52,7 @@ TEST(LargeDraft, IsMeasuredWithinTheMemoryPromised) {
                     table.capped[0],
                 1, 1e-5);
     if (before > 0) {
-        const double taken = peak_memory() - before;
+        const double taken = tests::peak_memory() - before;
         EXPECT_LT(taken, 1.1 * promised + 2e7);
         EXPECT_GT(taken, 0.5 * promised); // the promise is no mere bound
         std::printf("%d × %d: %zu cylinders, %.0f MB, %.0f B each (promised %.0f MB)\n", size, size,

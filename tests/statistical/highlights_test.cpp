@@ -14,7 +14,7 @@ namespace {
 
 using tests::Highlight, tests::highlights, tests::MeasuredCloth;
 
-const uint64_t kPaths = tests::long_run() ? 8'000'000 : 2'000'000;
+const uint64_t kPaths = tests::long_run() ? 8'000'000 : 4'000'000;
 constexpr double kAlongWarp = kPi / 2, kAlongWeft = 0;
 
 Cloth our_cloth(const char* name) {
@@ -36,17 +36,17 @@ void print_residuals(const MeasuredCloth& measured, const std::vector<Highlight>
     }
 }
 
-/// Whether there is one highlight at each of the angles and no other, each nearer than two standard
-/// deviations of the measured lobe's wider part, no broader than that, and no sharper than half the
-/// sharpest lobe of all that were measured.
+/// Whether there is one highlight at each of the angles and no other, each nearer than one standard
+/// deviation of the measured lobe's narrower part, no broader than its wider part, and no sharper
+/// than three quarters of the sharpest lobe of all that were measured.
 bool agrees(const MeasuredCloth& measured, const std::vector<double>& angles,
             const std::vector<Highlight>& found) {
     if (found.size() != angles.size())
         return false;
     for (size_t i = 0; i < angles.size(); ++i)
-        if (std::abs(found[i].angle - angles[i]) > 2 * measured.widest() ||
+        if (std::abs(found[i].angle - angles[i]) > measured.narrowest() ||
             found[i].width > measured.widest() ||
-            found[i].width < 0.5 * tests::kSatinCharmeuse.narrowest())
+            found[i].width < 0.75 * tests::kSatinCharmeuse.narrowest())
             return false;
     return true;
 }
@@ -58,16 +58,20 @@ TEST(Highlights, OfSilkCharmeuseAreThree) {
     const auto along = highlights(tests::mirror_scan(cloth, kAlongWarp, kPaths));
     print_residuals(measured, along);
     EXPECT_TRUE(agrees(measured, {0, outer}, along));
-    ASSERT_EQ(along.size(), 2u);
-    EXPECT_NEAR(along[0].angle, 0, measured.narrowest());
 
-    EXPECT_FALSE(
-        agrees(measured, {0, outer}, highlights(tests::mirror_scan(cloth, kAlongWeft, kPaths))));
+    // As sharp as images in smooth fibres are, they are not those of the cloth.
+    Cloth smooth = cloth;
+    smooth.warp.fibre.roughness = smooth.weft.fibre.roughness = 0;
+    EXPECT_FALSE(agrees(measured, {0, outer},
+                        highlights(tests::mirror_scan(smooth, kAlongWarp, kPaths / 2))));
+
+    EXPECT_FALSE(agrees(measured, {0, outer},
+                        highlights(tests::mirror_scan(cloth, kAlongWeft, kPaths / 4))));
     Cloth straight = cloth;
     straight.crimp_balance = 0;
     straight.ends_per_cm = 50; // so that the weft has room to take all crimp
-    EXPECT_FALSE(
-        agrees(measured, {0, outer}, highlights(tests::mirror_scan(straight, kAlongWarp, kPaths))));
+    EXPECT_FALSE(agrees(measured, {0, outer},
+                        highlights(tests::mirror_scan(straight, kAlongWarp, kPaths / 4))));
 }
 
 TEST(Highlights, OfCrepeDeChineAreTwo) {
@@ -77,8 +81,6 @@ TEST(Highlights, OfCrepeDeChineAreTwo) {
         highlights(tests::mirror_scan(our_cloth("silk-crepe-de-chine"), kAlongWarp, kPaths));
     print_residuals(measured, along);
     EXPECT_TRUE(agrees(measured, {outer}, along));
-    ASSERT_EQ(along.size(), 1u);
-    EXPECT_NEAR(along[0].angle, outer, measured.narrowest());
 }
 
 // No peak, but as much light from every slope, and so a BSDF that rises towards the horizon.

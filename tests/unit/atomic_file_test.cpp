@@ -52,7 +52,11 @@ TEST(AtomicFile, RefusesPlacesThatCannotHoldAFile) {
     const TemporaryFolder folder;
     const auto never = [](const std::filesystem::path&) { FAIL() << "nothing can be written"; };
     for (const std::filesystem::path& target :
-         {folder / "absent/out", folder.path(), std::filesystem::path("/dev/null")})
+         {folder / "absent/out", folder.path(), std::filesystem::path("/dev/null")}) {
         EXPECT_THROW(write_atomically(target, never), FileError) << target;
+        EXPECT_THROW(check_writable(target), FileError) << target;
+    }
+    check_writable(folder / "out");
+    EXPECT_EQ(files_in(folder), 0u);
     EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }

@@ -68,6 +68,51 @@ TEST_F(Command, RefusesAWrongCommandLine) {
     expect_refused({"info", "what.xyz"}, {"what.xyz"});
 }
 
+TEST_F(Command, RefusesNumbersThatAreNone) {
+    const std::string plain = kSource + "/scenes/cloths/viscose-plain.toml";
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"vgsp", plain, "--plane", "nan", "--theta-in", "30"},
+             {"vgsp", plain, "--plane", "0", "--theta-in", "nan"},
+             {"vgsp", plain, "--accuracy", "nan"},
+             {"vgsp", plain, "--accuracy", "inf"},
+             {"vgsp", plain, "--accuracy", "0"},
+             {"vgsp", plain, "--max-time", "nan"},
+             {"vgsp", plain, "--max-rays", "0"},
+             {"vgsp", plain, "--max-rays", "-1"},
+             {"vgsp", plain, "--seed", "-1"},
+             {"render", kSource + "/scenes/quickstart.pbrt", "--error", "nan"},
+             {"render", kSource + "/scenes/quickstart.pbrt", "--accuracy", "nan"},
+             {"diff", "a.exr", "b.exr", "--max", "nan"}}) {
+        const auto option = std::ranges::find_if(arguments, [&](const std::string& text) {
+            return text.starts_with("--") && text != "--plane" && text != "--theta-in";
+        });
+        const std::string name = option != arguments.end() ? *option
+                                 : arguments[3] == "nan"   ? "--plane"
+                                                           : "--theta-in";
+        const std::string found = arguments[3] == "nan" ? "nan" : arguments.back();
+        expect_refused(arguments,
+                       {"command line: " + name + ": expected", "found " + found + "\n"});
+    }
+}
+
+TEST_F(Command, RefusesPlacesThatCannotBeWrittenBeforeItTraces) {
+    const std::string plain = kSource + "/scenes/cloths/viscose-plain.toml";
+    for (const char* name : {"a.bsdf", "b.bsdf.part", "c.svg"})
+        std::filesystem::create_directory(folder_ / name);
+    // Each would go on for hours.
+    const auto table = [&](const std::string& output) -> std::vector<std::string> {
+        return {"vgsp", plain, "--accuracy", "1e-4", "-o", (folder_ / output).string()};
+    };
+    expect_refused(table("a.bsdf"), {"a.bsdf: expected a plain file", "found a folder"});
+    expect_refused(table("b.bsdf"), {"b.bsdf.part: expected a plain file"});
+    expect_refused(table("none/d.bsdf"), {"none/d.bsdf: expected an existing folder"});
+    for (const char* output : {"c.csv", "c.svg", "none/c.csv"}) {
+        std::vector<std::string> scan = table(output);
+        scan.insert(scan.end(), {"--plane", "0", "--theta-in", "30"});
+        expect_refused(scan, {"expected"});
+    }
+}
+
 TEST_F(Command, RefusesFilesThatAreMissing) {
     for (const std::vector<std::string>& arguments :
          std::vector<std::vector<std::string>>{{"vgsp", "none.toml"},
@@ -84,6 +129,10 @@ TEST_F(Command, RefusesFilesThatAreMissing) {
 TEST_F(Command, RefusesClothsThatCannotBe) {
     expect_refused({"vgsp", cloth("fibres = 37", "fibers = 37")},
                    {"cloth.toml:", "fibers", "fibres"});
+    expect_refused({"vgsp",
+                    cloth("[warp]", "[colourway.dark]\nwarp.color = [0.1, 0.1, 0.1]\n[warp]"),
+                    "--plane", "0", "--theta-in", "30"},
+                   {"cloth.toml:colourway: expected none for a scan", "found 1"});
     expect_refused({"vgsp", cloth("ends_per_cm = 50", "ends_per_cm = 0")},
                    {"ends_per_cm", "found 0"});
     expect_refused({"vgsp", cloth("ends_per_cm = 50", "ends_per_cm = 150")}, {"cloth.toml", "150"});
@@ -174,6 +223,39 @@ TEST_F(Command, MeasuresTellsAndExportsATable) {
             sum += std::stod(field[5]) * std::stod(field[7]);
     }
     EXPECT_NEAR(sum, from["R"][0].get<double>() + from["T"][0].get<double>(), 1e-5);
+}
+
+TEST_F(Command, GoesOnWithAMeasurementThatRanOutOfTime) {
+    const std::filesystem::path table = folder_ / "plain.bsdf", part = folder_ / "plain.bsdf.part";
+    std::vector<std::string> vgsp{"vgsp",
+                                  kSource + "/scenes/cloths/viscose-plain.toml",
+                                  "--incidence",
+                                  "30,45",
+                                  "--side",
+                                  "front",
+                                  "--accuracy",
+                                  "0.15",
+                                  "--threads",
+                                  "1",
+                                  "--realisations",
+                                  "1",
+                                  "-o",
+                                  table.string()};
+    const auto accuracy = [&] {
+        const tests::ProgramRun told = run_program({"info", table.string(), "--json"});
+        return nlohmann::json::parse(told.out)["accuracy"].get<double>();
+    };
+    std::vector<std::string> hurried = vgsp;
+    hurried.insert(hurried.end(), {"--max-time", "1e-3"});
+    const tests::ProgramRun first = run_program(hurried);
+    ASSERT_EQ(first.status, 0) << first.err;
+    EXPECT_NE(first.out.find("out of time"), std::string::npos) << first.out;
+    EXPECT_TRUE(std::filesystem::exists(part));
+    EXPECT_GT(accuracy(), 0.15);
+    vgsp.push_back("--resume");
+    EXPECT_EQ(run_program(vgsp).status, 0);
+    EXPECT_FALSE(std::filesystem::exists(part));
+    EXPECT_LE(accuracy(), 0.15);
 }
 
 TEST_F(Command, RendersTheSamePixelsWithAnyThreadsAndDiffTellsThemApart) {

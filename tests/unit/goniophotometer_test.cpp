@@ -6,7 +6,10 @@
 #include "vgsp/colour_solver.h"
 #include "vgsp/measure_cloth.h"
 
+#include <algorithm>
+#include <chrono>
 #include <gtest/gtest.h>
+#include <thread>
 
 namespace rapport {
 namespace {
@@ -131,6 +134,25 @@ TEST(Goniophotometer, HonoursItsBounds) {
     measure(tracer, kDyed, {.accuracy = 1e-4, .max_seconds = 0.3}, table);
     EXPECT_GT(table.paths[0], 0u);
     EXPECT_GT(table.accuracy[0], 1e-3); // for 1e-4 it would go on for hours
+}
+
+TEST(Goniophotometer, TellsOfItsPilotAndEndsItInTime) {
+    const FibreTracer tracer(tests::reference_stack());
+    BsdfTable table = make_partial_table(Bands{}, std::vector<IncidentDirection>(200));
+    int pilots = 0;
+    const GoniophotometerCounts counts =
+        measure(tracer, kDyed, {.accuracy = 1e-4, .max_seconds = 0.2}, table,
+                [&](const GoniophotometerProgress& state) {
+                    if (!state.pilot)
+                        return;
+                    ++pilots; // of some hundred times as many paths, if it is let
+                    EXPECT_EQ(state.fraction, 0);
+                    EXPECT_LE(state.seconds_left, 0.2);
+                    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+                });
+    EXPECT_EQ(pilots, 1);
+    EXPECT_TRUE(counts.out_of_time);
+    EXPECT_GE(std::ranges::min(table.paths), 1024u);
 }
 
 TEST(Goniophotometer, RefusesWhatHasNoMeaning) {
