@@ -14,6 +14,10 @@
 namespace rapport {
 namespace {
 
+/// As how long segments outside of the picture count, of what they would be seen under: what is out
+/// there casts shadows and is met by scattered light, but its outline is in no picture.
+constexpr double kUnseenShare = 1.0 / 8;
+
 using MaterialPointer = std::shared_ptr<const MaterialDescription>;
 
 MaterialPointer cloth_material(const std::string& name, const std::filesystem::path& file,
@@ -38,7 +42,7 @@ class Builder {
     Builder(const SceneDescription& description, const BuildOptions& options,
             std::vector<std::string>& warnings)
         : description_(description), options_(options), warnings_(warnings),
-          base_dir_(description.path.parent_path()) {
+          base_dir_(description.path.parent_path()), view_(description.camera) {
         for (const auto& [name, file] : options.cloths)
             overrides_[name] = cloth_material(name, file, colourway_of(name));
         for (const auto& [name, colourway] : options.colourways)
@@ -81,10 +85,11 @@ class Builder {
             const MaterialPointer material = material_for(shape, name);
             return material && material->type == "cloth";
         };
-        const auto seen_length = [&](const glm::dvec3& a, const glm::dvec3& b) {
-            const glm::dmat4 to_world(shape.to_world);
-            return description_.camera.seen_length(to_world * glm::dvec4(a, 1),
-                                                   to_world * glm::dvec4(b, 1));
+        const auto seen_length = [&, to_world = glm::dmat4(shape.to_world)](const glm::dvec3& a,
+                                                                            const glm::dvec3& b) {
+            const glm::dvec3 from = to_world * glm::dvec4(a, 1), to = to_world * glm::dvec4(b, 1);
+            return (view_.may_show(from, to) ? 1 : kUnseenShare) *
+                   description_.camera.seen_length(from, to);
         };
         std::vector<ShapePart> parts = make_shape(
             shape.type, {shape.params, base_dir_, needs_uvs, warnings_, seen_length, shape.model});
@@ -224,6 +229,7 @@ class Builder {
     const BuildOptions& options_;
     std::vector<std::string>& warnings_;
     std::filesystem::path base_dir_;
+    ViewVolume view_;
     std::map<std::string, MaterialPointer> overrides_;
     std::map<const MaterialDescription*, std::shared_ptr<const Bsdf>> materials_;
     std::map<const TextureDescription*, std::shared_ptr<const PictureTexture>> textures_;

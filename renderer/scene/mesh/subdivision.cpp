@@ -20,9 +20,6 @@ namespace {
 /// with the square of it, and no garment comes near.
 constexpr uint32_t kMaxValence = 256;
 
-/// About 8 GB of limit points, mesh and BVH.
-constexpr size_t kMaxTriangles = size_t{1} << 26;
-
 constexpr size_t kFacesPerBatch = 64;
 
 std::vector<char> faces_at_crowded_vertices(const IndexedMesh& mesh) {
@@ -172,6 +169,17 @@ size_t fill_frames(TriangleMesh& result, const ControlMesh& control,
     return repair_frames(result, std::move(sound));
 }
 
+/// Cuts every edge into half as many pieces, rounded up; false if none can be cut less. Sides of
+/// equal rates, as those of one edge have, stay equal.
+bool halve(SideRates& rates) {
+    bool fell = false;
+    for (uint16_t& rate : rates) {
+        fell |= rate > 1;
+        rate = static_cast<uint16_t>((rate + 1) / 2);
+    }
+    return fell;
+}
+
 size_t count_creases(const ControlMesh& control) {
     size_t creases = 0;
     for_each_edge(control.edges, [&](std::span<const EdgeUse> edge) {
@@ -205,19 +213,22 @@ TriangleMesh subdivide(const CleanMesh& input, const SubdivisionOptions& options
         SideRates rates = side_rates(control, options.rate);
         std::optional<Tessellation> tessellation;
         std::vector<LimitPoint> points;
+        counts.coarser = 1;
         do {
-            tessellation = tessellate(control, rates, kMaxTriangles);
-            if (!tessellation)
-                throw FileError(
-                    name, "", fmt::format("a subdivision into at most {} triangles", kMaxTriangles),
-                    "more");
+            while (!(tessellation = tessellate(control, rates, options.max_triangles))) {
+                if (!halve(rates))
+                    throw FileError(name, "",
+                                    fmt::format("at most {} triangles", options.max_triangles),
+                                    "more");
+                counts.coarser *= 2;
+            }
             points = limit_points(control, surface.get(), *tessellation, flat);
             complete = flat == control.detached;
             if (!complete)
                 break;
             result.triangles = tessellation->triangles;
             fill_shape(result, *tessellation, points);
-        } while (options.finest_rate &&
+        } while (options.finest_rate && counts.coarser == 1 &&
                  refine_sharp_turns(control, *tessellation, result, options.finest_rate, rates));
         if (!complete)
             continue;

@@ -16,6 +16,9 @@ struct SubdivisionOptions {
     double crease_angle = kPi; ///< see ControlMeshOptions; π: no creases
     bool quads = false;        ///< see ControlMeshOptions
     bool need_uvs = false;     ///< a mesh without UVs, or whose UVs cover no area, is a FileError
+    /// All edges are cut less finely where it would take more; the default is about 8 GB of limit
+    /// points, mesh and BVH.
+    size_t max_triangles = size_t{1} << 26;
 };
 
 struct SubdivisionReport {
@@ -28,6 +31,7 @@ struct SubdivisionReport {
     size_t quads = 0;              ///< made of two triangles each
     size_t mirrored = 0;           ///< faces whose UVs are mirrored
     size_t frames_repaired = 0;    ///< vertices where the UV derivative was singular
+    int coarser = 1;               ///< times that edges are cut less finely than their rates say
 };
 
 /// The limit surface of a triangle mesh (limit_surface.h), cut into triangles by the rates of its

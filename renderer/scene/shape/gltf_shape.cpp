@@ -27,7 +27,8 @@ constexpr float kShortestEdge = 0.5f;
 constexpr double kNotableStretch = 1.1, kNotableShear = radians(10.0);
 
 /// What was mended, in one line.
-std::string summary(const CleaningReport& dropped, const SubdivisionReport& counts) {
+std::string summary(const CleaningReport& dropped, const SubdivisionReport& counts,
+                    size_t max_triangles) {
     std::string line;
     for (const auto& [count, what] :
          {std::pair{dropped.degenerate, "triangles with two corners at one point dropped"},
@@ -39,6 +40,10 @@ std::string summary(const CleaningReport& dropped, const SubdivisionReport& coun
           {counts.frames_repaired, "vertices given the warp direction of their neighbours"}})
         if (count > 0)
             line += fmt::format("{}{} {}", line.empty() ? "" : "; ", count, what);
+    if (counts.coarser > 1)
+        line += fmt::format("{}edges cut {} times less finely than asked, lest there be more than "
+                            "{} triangles",
+                            line.empty() ? "" : "; ", counts.coarser, max_triangles);
     return line;
 }
 
@@ -125,7 +130,7 @@ TriangleMesh refine(const CleanMesh& part, const ShapeContext& context,
     if (options.need_uvs && by_tangents && part.warps.empty())
         throw FileError(name, "", "TANGENT and NORMAL attributes, along which the cloth lies",
                         "none");
-    std::vector<std::string> told{summary(part.dropped, counts)};
+    std::vector<std::string> told{summary(part.dropped, counts, options.max_triangles)};
     if (options.need_uvs && !by_tangents)
         told.push_back(strain_told(stated_uv_scale(context.params), part, mesh));
     for (const std::string& line : told)
@@ -137,7 +142,8 @@ TriangleMesh refine(const CleanMesh& part, const ShapeContext& context,
 /// A glTF or GLB model, metres, in glTF's axes (+y up); one part per primitive, subdivided.
 ///     "string filename"   required
 ///     "float edgelength"  edges are cut into pieces that are seen under this many pixels at most,
-///                         if they stand square to the view; default 4
+///                         if they stand square to the view; default 4. Out of the picture pieces
+///                         are eight times as long
 ///     "integer level"     instead, each edge is cut into so many; 0 = the triangles as they are
 ///     "float creaseangle" edges where the file's normals differ by more stay sharp [degrees];
 ///                         default 30
