@@ -155,10 +155,16 @@ class Parser {
                                 "LookAt without a direction");
         set_ctm(state_.ctm * *matrix);
     }
-    void transform() { set_ctm(glm::make_mat4(read_numbers<16>("16 numbers").data())); }
-    void concat_transform() {
-        set_ctm(state_.ctm * glm::make_mat4(read_numbers<16>("16 numbers").data()));
+    glm::dmat4 read_matrix() {
+        const auto v = read_numbers<16>("16 numbers");
+        if (v[3] != 0 || v[7] != 0 || v[11] != 0 || v[15] != 1) // column by column
+            throw lexer_->error(directive_,
+                                "an affine matrix, every fourth number of which makes 0 0 0 1",
+                                fmt::format("{} {} {} {}", v[3], v[7], v[11], v[15]));
+        return glm::make_mat4(v.data());
     }
+    void transform() { set_ctm(read_matrix()); }
+    void concat_transform() { set_ctm(state_.ctm * read_matrix()); }
     void identity() { state_.ctm = glm::dmat4(1); }
     void coordinate_system() { coordinate_systems_[read_string("a name in quotes")] = state_.ctm; }
     void coord_sys_transform() {
