@@ -6,6 +6,7 @@
 #include "renderer/scene/shape/shape.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <set>
@@ -108,6 +109,8 @@ class Builder {
             }
             Surface surface;
             transform(part.mesh, shape.to_world);
+            if (has_far_positions(part.mesh))
+                shape.params.fail("", "positions below 1e18 m", "larger ones");
             if (part.fibres)
                 place_fibres(part.fibres, shape, surface);
             if (shape.reverse_orientation)
@@ -120,7 +123,7 @@ class Builder {
                 described(material ? *material : MaterialDescription{}, part.material);
             surface.mesh = std::make_shared<const TriangleMesh>(std::move(part.mesh));
             if (shape.area_light)
-                set_emission(*shape.area_light, surface);
+                set_emission(shape, surface);
             surfaces.push_back(std::move(surface));
         }
     }
@@ -219,10 +222,19 @@ class Builder {
     }
 
     /// AreaLightSource "diffuse": "rgb L" radiance, "float scale", "bool twosided".
-    static void set_emission(const Params& params, Surface& surface) {
+    static void set_emission(const ShapeDescription& shape, Surface& surface) {
+        const Params& params = *shape.area_light;
         surface.emission = light_radiance(params);
         surface.two_sided_emission = params.get_bool("twosided", false);
         params.check_all_used();
+        float area = 0; // in single precision, as the light takes it
+        for (const glm::uvec3& t : surface.mesh->triangles) {
+            const auto& p = surface.mesh->positions;
+            area += glm::length(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x])) / 2;
+        }
+        if (!std::isfinite(2 * static_cast<float>(kPi) * area * luminance(surface.emission)))
+            shape.params.fail("", "an area light whose power is a number",
+                              "one too large or too bright");
     }
 
     const SceneDescription& description_;

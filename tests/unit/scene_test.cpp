@@ -7,6 +7,7 @@
 #include "renderer/scene/pbrt/pbrt_parser.h"
 #include "renderer/scene/scene_builder.h"
 #include "renderer/scene/shape/shape.h"
+#include "tests/support/gltf_models.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/small_scenes.h"
 #include "tests/support/temporary_folder.h"
@@ -230,6 +231,26 @@ TEST_F(SceneBuilder, RefusesWithChoices) {
     contains(refusal("LightSource \"infinite\" \"string filename\" \"absent.exr\""), "absent.exr");
     contains(refusal(kTriangle, {{{"Body", "satin.bsdf"}}, {}, {}}), "Body");
     contains(refusal(kTriangle, {{}, {}, {{"Body", "navy"}}}), "a cloth for each");
+}
+
+TEST_F(SceneBuilder, RefusesWhatSinglePrecisionCannotTrace) {
+    const auto refused = [&](const std::string& world, const std::string& expected) {
+        EXPECT_NE(refusal(world).find("scene.pbrt:3" + expected), std::string::npos)
+            << refusal(world);
+    };
+    tests::write_bytes(folder_ / "model.glb", tests::quad().glb());
+    const std::string light = " AreaLightSource \"diffuse\"\n",
+                      far = "1 0 0 0  0 1 0 0  0 0 1 0  0 0 1e18 1]\n";
+    for (const std::string shape : {kTriangle, "Shape \"disk\"", "Shape \"sphere\"",
+                                    "Shape \"gltf\" \"string filename\" \"model.glb\""}) {
+        refused("Scale 1e20 1e20 1e20\n" + shape, ": expected positions below 1e18");
+        refused("ConcatTransform [" + far + shape, ": expected positions below 1e18");
+        refused("Scale 1e17 1e17 1e17" + light + shape, ": expected an area light");
+    }
+    refused("AreaLightSource \"diffuse\" \"rgb L\" [1e38 1e38 1e38] Scale 9 9 9\n" +
+                std::string(kTriangle),
+            ": expected an area light");
+    EXPECT_EQ(build("Scale 1e9 1e9 1e9" + light + kTriangle).surfaces().size(), 1u);
 }
 
 TEST_F(SceneBuilder, AClothNeedsUvs) {

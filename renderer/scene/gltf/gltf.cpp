@@ -5,6 +5,7 @@
 #include "renderer/scene/gltf/gltf_material.h"
 #include "renderer/scene/gltf/gltf_primitive.h"
 #include "renderer/scene/gltf/gltf_skin.h"
+#include "renderer/scene/mesh/mesh_operations.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -13,10 +14,8 @@
 namespace rapport {
 namespace {
 
-/// Bounds on what many nodes that show one mesh may ask for, and on coordinates, which ray tracing
-/// in single precision must be able to square.
+/// Bound on what many nodes that show one mesh may ask for.
 constexpr size_t kMaxTriangles = size_t{1} << 28;
-constexpr float kMaxCoordinate = 1e18f;
 
 class ModelReader {
   public:
