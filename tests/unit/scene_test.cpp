@@ -231,11 +231,43 @@ TEST_F(SceneBuilder, RefusesWithChoices) {
     contains(refusal("LightSource \"infinite\" \"string filename\" \"absent.exr\""), "absent.exr");
     contains(refusal(kTriangle, {{{"Body", "satin.bsdf"}}, {}, {}}), "Body");
     contains(refusal(kTriangle, {{}, {}, {{"Body", "navy"}}}), "a cloth for each");
+    contains(refusal(kTriangle, {{{"", "satin.bsdf"}}, {}, {}}), "a glTF shape to wear the cloth");
+    contains(
+        refusal("MakeNamedMaterial \"Body\" \"string type\" \"diffuse\"\n" + std::string(kTriangle),
+                {{{"Body", "satin.bsdf"}}, {}, {}}),
+        "a shape that wears \"Body\"");
+}
+
+TEST_F(SceneBuilder, RefusesWithThePlaceInTheScene) {
+    const auto refused = [&](const std::string& world, const std::string& part) {
+        const std::string message = refusal(world);
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+    };
+    std::ofstream(folder_ / "torn.png") << "\x89PNG";
+    const std::string texture = "Texture \"t\" \"spectrum\" \"imagemap\" ";
+    for (const std::string shape : {"", kTriangle}) { // used or not
+        refused("Material \"velvet\"\n" + shape, "scene.pbrt:2:10: expected a material");
+        refused("Material \"diffuse\" \"float gloss\" 1\n" + shape, "scene.pbrt:2:20: ");
+        refused("AreaLightSource \"diffuse\" \"float M\" 1\n" + shape, "scene.pbrt:2:27: ");
+    }
+    refused("MakeNamedMaterial \"a\" \"string type\" \"velvet\"",
+            "scene.pbrt:2:23: expected a mat");
+    refused("LightSource \"sun\"", "scene.pbrt:2:13: expected a light");
+    refused("Shape \"torus\"", "scene.pbrt:2:7: expected a shape");
+    refused("ObjectBegin \"o\"\nShape \"torus\"\nObjectEnd", "scene.pbrt:3:7: expected a shape");
+    refused(texture + "\"string filname\" \"a.png\"", "scene.pbrt:2:9: ");
+    refused(texture + "\"string filename\" \"a.png\" \"float uscal\" 1", "scene.pbrt:2:61: ");
+    for (const char* const file : {"absent.png", "torn.png"})
+        refused(texture + "\"string filename\" \"" + file + "\"", "scene.pbrt:2:9)");
+    refused("LightSource \"infinite\" \"string filename\" \"absent.exr\"", "scene.pbrt:2:13)");
+    refused("Shape \"gltf\" \"string filename\" \"absent.glb\"", "scene.pbrt:2:7)");
+    // What nothing wears needs no table, for the caller may have replaced it.
+    build("Material \"cloth\" \"string filename\" \"absent.bsdf\"");
 }
 
 TEST_F(SceneBuilder, RefusesWhatSinglePrecisionCannotTrace) {
     const auto refused = [&](const std::string& world, const std::string& expected) {
-        EXPECT_NE(refusal(world).find("scene.pbrt:3" + expected), std::string::npos)
+        EXPECT_NE(refusal(world).find("scene.pbrt:3:7" + expected), std::string::npos)
             << refusal(world);
     };
     tests::write_bytes(folder_ / "model.glb", tests::quad().glb());
