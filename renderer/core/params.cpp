@@ -52,6 +52,11 @@ bool Params::has(std::string_view name) const {
     return find(name) != nullptr;
 }
 
+bool Params::is_string(std::string_view name) const {
+    const Param* param = find(name);
+    return param && param->type == "string";
+}
+
 std::optional<std::string> Params::take_texture(std::string_view name) {
     const Param* param = find(name);
     if (!param || param->type != "texture")

@@ -33,6 +33,8 @@ class Params {
     /// A second parameter of the same name is a FileError.
     void add(Param param);
     bool has(std::string_view name) const;
+    /// Whether the parameter is given and of type "string".
+    bool is_string(std::string_view name) const;
     /// Takes out the parameter `name` if it is of type "texture", and returns the texture's name.
     std::optional<std::string> take_texture(std::string_view name);
 

@@ -34,21 +34,13 @@ std::vector<char> faces_at_crowded_vertices(const IndexedMesh& mesh) {
     return flat;
 }
 
-/// Whether the UVs run clockwise as seen from the face side.
-bool is_mirrored(const IndexedMesh& mesh, size_t triangle) {
-    const glm::uvec3 t = mesh.uv_index[triangle];
-    const glm::dvec2 origin = mesh.uvs[t.x];
-    const glm::dvec2 a = glm::dvec2(mesh.uvs[t.y]) - origin, b = glm::dvec2(mesh.uvs[t.z]) - origin;
-    return a.x * b.y - a.y * b.x < 0;
-}
-
 /// Gives mirrored faces UVs of their own, so that the UV map is cut where it folds back over
 /// itself: a smooth map would stand still there and have no derivative. Returns how many there are.
 size_t separate_mirrored_faces(IndexedMesh& mesh) {
     const auto offset = static_cast<uint32_t>(mesh.uvs.size());
     size_t mirrored = 0;
     for (size_t t = 0; t < mesh.uv_index.size(); ++t)
-        if (is_mirrored(mesh, t)) {
+        if (has_mirrored_uvs(mesh, t)) {
             mesh.uv_index[t] += offset;
             ++mirrored;
         }
@@ -233,6 +225,7 @@ TriangleMesh subdivide(const CleanMesh& input, const SubdivisionOptions& options
         if (!complete)
             continue;
         counts.non_manifold_edges = control.cut.non_manifold_edges;
+        counts.bow_ties = control.cut.bow_ties;
         counts.t_junctions = control.t_junctions;
         counts.creases = count_creases(control);
         counts.quads = mesh.position_index.size() - control.faces.size();

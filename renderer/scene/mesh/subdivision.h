@@ -25,6 +25,7 @@ struct SubdivisionReport {
     size_t faces = 0;              ///< triangles of the mesh after cleaning
     size_t dropped = 0;            ///< triangles without area of their own (mesh_cleaning.h)
     size_t non_manifold_edges = 0; ///< cut, and kept straight so that the pieces still meet
+    size_t bow_ties = 0;           ///< vertices cut apart, where pieces meet in a point
     size_t t_junctions = 0;        ///< vertices on another edge, kept on its straight line
     size_t unrefinable = 0;        ///< faces that keep their flat triangles
     size_t creases = 0;            ///< edges that stay sharp, as the file's normals are there
@@ -48,7 +49,7 @@ TriangleMesh subdivide(const CleanMesh& mesh, const SubdivisionOptions& options,
 /// The mesh as it is, not subdivided: one vertex for each combination of position, UV and normal
 /// that occurs. Normals are the file's, on the face side; without them the mean of the triangles
 /// around the position. With UVs, weft and warp from the triangles' constant derivatives, or from
-/// the mesh's warps.
-TriangleMesh flat_mesh(const IndexedMesh& mesh);
+/// the mesh's warps. The report tells of mirrored faces and mended frames.
+TriangleMesh flat_mesh(const IndexedMesh& mesh, SubdivisionReport* report = nullptr);
 
 } // namespace rapport
