@@ -1,7 +1,5 @@
 #include "materials/bsdf.h"
 
-#include "renderer/core/error.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,9 +9,9 @@ std::shared_ptr<const Bsdf> make_material(const std::string& name, const Materia
     const MaterialRegistry& registry = MaterialRegistry::instance();
     const MaterialFactory* factory = registry.find(name);
     if (!factory)
-        throw FileError(context.params.path(), context.params.line(),
-                        fmt::format("a material: {}", fmt::join(registry.names(), ", ")),
-                        fmt::format("\"{}\"", name));
+        context.params.fail("type",
+                            fmt::format("a material: {}", fmt::join(registry.names(), ", ")),
+                            fmt::format("\"{}\"", name));
     auto material = (*factory)(context);
     context.params.check_all_used();
     return material;

@@ -33,8 +33,10 @@ const std::initializer_list<std::string_view> kPoint3Types{"point3", "point",  "
 
 } // namespace
 
-Params::Params(std::string path, std::string owner, int line)
-    : path_(std::move(path)), owner_(std::move(owner)), line_(line) {}
+Params::Params(std::string path, std::string owner, int line, int column)
+    : path_(std::move(path)), owner_(std::move(owner)), line_(line), column_(column) {}
+
+std::string Params::place() const { return place_of(line_, column_); }
 
 void Params::add(Param param) {
     if (const Param* first = find(param.name))
@@ -48,6 +50,11 @@ void Params::add(Param param) {
 bool Params::has(std::string_view name) const {
     asked_.emplace(name);
     return find(name) != nullptr;
+}
+
+bool Params::is_string(std::string_view name) const {
+    const Param* param = find(name);
+    return param && param->type == "string";
 }
 
 std::optional<std::string> Params::take_texture(std::string_view name) {
@@ -104,17 +111,14 @@ std::string Params::get_string(std::string_view name, std::string_view fallback)
 }
 
 Rgb Params::get_rgb(std::string_view name, const Rgb& fallback) const {
-    const Param* param = find_typed(name, {"rgb", "float", "spectrum"}, 0);
+    const Param* param = find_typed(name, {"rgb", "float"}, 0);
     if (!param)
         return fallback;
     if (param->type == "rgb") {
         find_typed(name, {"rgb"}, 3);
         return {param->numbers[0], param->numbers[1], param->numbers[2]};
     }
-    if (param->numbers.size() != 1)
-        fail(name, "one number for " + declaration(*param),
-             param->strings.empty() ? plural(param->numbers.size())
-                                    : "\"" + param->strings[0] + "\"");
+    find_typed(name, {"float"}, 1);
     return Rgb(static_cast<float>(param->numbers[0]));
 }
 
@@ -181,8 +185,7 @@ void Params::check_all_used() const {
 void Params::fail(std::string_view name, const std::string& expected,
                   const std::string& found) const {
     const Param* param = find(name);
-    throw FileError(path_, param ? place_of(param->line, param->column) : place_of(line_, 0),
-                    expected, found);
+    throw FileError(path_, param ? place_of(param->line, param->column) : place(), expected, found);
 }
 
 } // namespace rapport

@@ -16,7 +16,7 @@ struct Param {
     std::string type; ///< as written: float, integer, bool, string, rgb, point3, normal, …
     std::string name;
     std::vector<double> numbers;      ///< all numeric types, and bool as 0 or 1
-    std::vector<std::string> strings; ///< string, spectrum and texture names
+    std::vector<std::string> strings; ///< string and texture names
     int line = 0, column = 0;
 };
 
@@ -26,12 +26,15 @@ struct Param {
 class Params {
   public:
     Params() = default;
-    /// `path` is the file the parameters stand in, `owner` what they belong to ("Shape \"gltf\"").
-    Params(std::string path, std::string owner, int line);
+    /// `path` is the file the parameters stand in, `owner` what they belong to ("Shape \"gltf\""),
+    /// line and column the place of that, where it has one.
+    Params(std::string path, std::string owner, int line, int column = 0);
 
     /// A second parameter of the same name is a FileError.
     void add(Param param);
     bool has(std::string_view name) const;
+    /// Whether the parameter is given and of type "string".
+    bool is_string(std::string_view name) const;
     /// Takes out the parameter `name` if it is of type "texture", and returns the texture's name.
     std::optional<std::string> take_texture(std::string_view name);
 
@@ -39,7 +42,7 @@ class Params {
     int get_int(std::string_view name, int fallback) const;
     bool get_bool(std::string_view name, bool fallback) const;
     std::string get_string(std::string_view name, std::string_view fallback) const;
-    /// "rgb", or a single "float"/"spectrum" number taken as grey.
+    /// "rgb", or a "float" taken as grey.
     Rgb get_rgb(std::string_view name, const Rgb& fallback) const;
     glm::vec3 get_point(std::string_view name, const glm::vec3& fallback) const;
     std::vector<float> get_floats(std::string_view name) const;
@@ -56,6 +59,7 @@ class Params {
     const std::string& path() const { return path_; }
     const std::string& owner() const { return owner_; }
     int line() const { return line_; }
+    std::string place() const; ///< of the owner; see FileError
 
   private:
     const Param* find(std::string_view name) const;
@@ -63,7 +67,7 @@ class Params {
                             size_t count) const;
 
     std::string path_, owner_;
-    int line_ = 0;
+    int line_ = 0, column_ = 0;
     std::vector<Param> params_;
     mutable std::set<std::string, std::less<>> asked_;
 };

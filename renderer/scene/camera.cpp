@@ -55,6 +55,34 @@ double Camera::seen_length(const glm::dvec3& a, const glm::dvec3& b) const {
     return length / (distance * pixel * std::tan(radians(double{fov_degrees}) / 2));
 }
 
+ViewVolume::ViewVolume(const Camera& camera) {
+    const glm::dvec4 window(screen_window(camera));
+    const bool perspective = camera.kind == Camera::Kind::perspective;
+    const double scale = perspective ? std::tan(radians(double{camera.fov_degrees}) / 2) : 1;
+    // In camera space a ray is at scale·window·z where it is at z, or at window everywhere.
+    const auto side = [&](int axis, double sign, double edge) {
+        glm::dvec4 plane(0);
+        plane[axis] = sign;
+        plane[perspective ? 2 : 3] = -sign * scale * edge;
+        return plane;
+    };
+    planes_ = {side(0, 1, window.x), side(0, -1, window.y), side(1, 1, window.z),
+               side(1, -1, window.w), glm::dvec4(0, 0, 1, 0)};
+    const glm::dmat4 to_camera = glm::inverse(glm::dmat4(camera.to_world));
+    for (glm::dvec4& plane : planes_) {
+        plane = plane * to_camera;
+        plane /= glm::length(glm::dvec3(plane));
+    }
+}
+
+bool ViewVolume::may_show(const glm::dvec3& a, const glm::dvec3& b) const {
+    const double length = glm::distance(a, b);
+    return std::ranges::all_of(planes_, [&](const glm::dvec4& plane) {
+        return std::max(glm::dot(plane, glm::dvec4(a, 1)), glm::dot(plane, glm::dvec4(b, 1))) >=
+               -length;
+    });
+}
+
 kernel::Ray Camera::ray(const glm::vec2& pixel) const { return CameraRays(*this)(pixel); }
 
 } // namespace rapport

@@ -2,6 +2,8 @@
 
 #include "renderer/kernel/scene.h"
 
+#include <array>
+
 namespace rapport {
 
 /// Perspective or orthographic, as in pbrt: the screen window spans [−1, 1] along the shorter side
@@ -34,6 +36,20 @@ class CameraRays {
     // matrices does not vary with the pixel.
     glm::vec3 eye_, forward_;
     glm::mat3 origin_, direction_;
+};
+
+/// What of the world a camera can have in its picture; all that does not depend on the place is
+/// worked out once.
+class ViewVolume {
+  public:
+    explicit ViewVolume(const Camera& camera);
+    /// Whether the segment from `a` to `b`, or anything no farther from it than it is long, may be
+    /// in the picture: with an edge also the faces of which it is the longest.
+    bool may_show(const glm::dvec3& a, const glm::dvec3& b) const;
+
+  private:
+    /// Unit normal, inwards, and offset: the sides of the picture and the eye's own plane.
+    std::array<glm::dvec4, 5> planes_;
 };
 
 } // namespace rapport

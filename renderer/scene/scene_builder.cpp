@@ -6,6 +6,7 @@
 #include "renderer/scene/shape/shape.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <set>
@@ -13,6 +14,10 @@
 
 namespace rapport {
 namespace {
+
+/// As how long segments outside of the picture count, of what they would be seen under: what is out
+/// there casts shadows and is met by scattered light, but its outline is in no picture.
+constexpr double kUnseenShare = 1.0 / 8;
 
 using MaterialPointer = std::shared_ptr<const MaterialDescription>;
 
@@ -33,12 +38,25 @@ MaterialPointer cloth_material(const std::string& name, const std::filesystem::p
     return material;
 }
 
+/// What `make` makes; a FileError of a file that the scene names then tells also where it does.
+template <class Make> auto named_in(const Params& params, const Make& make) {
+    try {
+        return make();
+    } catch (const FileError& error) {
+        if (error.path == params.path() || params.place().empty())
+            throw;
+        throw FileError(
+            error.path, error.place, error.expected,
+            fmt::format("{} (named at {}:{})", error.found, params.path(), params.place()));
+    }
+}
+
 class Builder {
   public:
     Builder(const SceneDescription& description, const BuildOptions& options,
             std::vector<std::string>& warnings)
         : description_(description), options_(options), warnings_(warnings),
-          base_dir_(description.path.parent_path()) {
+          base_dir_(description.path.parent_path()), view_(description.camera) {
         for (const auto& [name, file] : options.cloths)
             overrides_[name] = cloth_material(name, file, colourway_of(name));
         for (const auto& [name, colourway] : options.colourways)
@@ -53,19 +71,16 @@ class Builder {
     Scene build() {
         std::vector<std::shared_ptr<Light>> lights;
         for (const LightDescription& light : description_.lights)
-            lights.push_back(
-                make_light(light.type, {light.params, base_dir_, light.to_world, &warnings_}));
+            lights.push_back(named_in(light.params, [&] {
+                return make_light(light.type,
+                                  {light.params, base_dir_, light.to_world, &warnings_});
+            }));
         std::vector<Surface> surfaces;
         for (const ShapeDescription& shape : description_.shapes)
             add_shape(shape, surfaces);
-        for (const auto& [name, file] : options_.cloths)
-            if (!name.empty() && !names_met_.contains(name))
-                throw FileError(description_.path.string(), "",
-                                names_met_.empty() ? "a named material, of which it has none"
-                                                   : fmt::format("a material of its own: {}",
-                                                                 fmt::join(names_met_, ", ")),
-                                fmt::format("\"{}\" for {}", name, file.string()));
+        check_overrides_are_worn();
         check_fibres_are_lit(surfaces, lights);
+        check_unused();
         return Scene(std::move(surfaces), std::move(lights), description_.camera,
                      description_.settings);
     }
@@ -81,21 +96,24 @@ class Builder {
             const MaterialPointer material = material_for(shape, name);
             return material && material->type == "cloth";
         };
-        const auto seen_length = [&](const glm::dvec3& a, const glm::dvec3& b) {
-            const glm::dmat4 to_world(shape.to_world);
-            return description_.camera.seen_length(to_world * glm::dvec4(a, 1),
-                                                   to_world * glm::dvec4(b, 1));
+        const auto seen_length = [&, to_world = glm::dmat4(shape.to_world)](const glm::dvec3& a,
+                                                                            const glm::dvec3& b) {
+            const glm::dvec3 from = to_world * glm::dvec4(a, 1), to = to_world * glm::dvec4(b, 1);
+            return (view_.may_show(from, to) ? 1 : kUnseenShare) *
+                   description_.camera.seen_length(from, to);
         };
-        std::vector<ShapePart> parts = make_shape(
-            shape.type, {shape.params, base_dir_, needs_uvs, warnings_, seen_length, shape.model});
+        std::vector<ShapePart> parts = named_in(shape.params, [&] {
+            return make_shape(shape.type, {shape.params, base_dir_, needs_uvs, warnings_,
+                                           seen_length, shape.model});
+        });
         for (ShapePart& part : parts) {
             const MaterialPointer material = material_for(shape, part.material);
             if (material && part.mesh.uvs.empty() &&
                 (material->type == "cloth" || material->reflectance))
-                throw FileError(shape.params.path(), shape.params.line(),
-                                fmt::format("UVs, along which the {} lies",
-                                            material->reflectance ? "texture" : "cloth"),
-                                "a mesh without");
+                shape.params.fail("",
+                                  fmt::format("UVs, along which the {} lies",
+                                              material->reflectance ? "texture" : "cloth"),
+                                  "a mesh without");
             if (!material && part.base_color.picture && part.mesh.uvs.empty()) {
                 warnings_.push_back(part.base_color.picture->name +
                                     " is left out: its mesh has no UVs");
@@ -103,6 +121,8 @@ class Builder {
             }
             Surface surface;
             transform(part.mesh, shape.to_world);
+            if (has_far_positions(part.mesh))
+                shape.params.fail("", "positions below 1e18 m", "larger ones");
             if (part.fibres)
                 place_fibres(part.fibres, shape, surface);
             if (shape.reverse_orientation)
@@ -115,7 +135,7 @@ class Builder {
                 described(material ? *material : MaterialDescription{}, part.material);
             surface.mesh = std::make_shared<const TriangleMesh>(std::move(part.mesh));
             if (shape.area_light)
-                set_emission(*shape.area_light, surface);
+                set_emission(shape, surface);
             surfaces.push_back(std::move(surface));
         }
     }
@@ -123,14 +143,53 @@ class Builder {
     static void place_fibres(const std::shared_ptr<const FibreSwatch>& fibres,
                              const ShapeDescription& shape, Surface& surface) {
         if (shape.area_light)
-            throw FileError(shape.params.path(), shape.params.line(), "fibres that do not shine",
-                            "an area light");
+            shape.params.fail("", "fibres that do not shine", "an area light");
         try {
             surface.fibres.emplace(fibres, shape.to_world);
         } catch (const std::invalid_argument&) {
-            throw FileError(shape.params.path(), shape.params.line(),
-                            "a transform of turns, moves and scales common to all axes",
-                            "one that deforms the fibres");
+            shape.params.fail("", "a transform of turns, moves and scales common to all axes",
+                              "one that deforms the fibres");
+        }
+    }
+
+    /// Mistakes are told also where nothing is seen of them. Cloths are not measured for that, nor
+    /// missed: what nothing wears may have been replaced by the caller's.
+    void check_unused() {
+        const auto no_table = [](const auto&, const auto&) { return nullptr; };
+        for (const MaterialPointer& material : description_.stated.materials)
+            if (!materials_.contains(material.get()))
+                make_material(material->type, {material->params, material->base_dir, no_table});
+        for (const auto& description : description_.stated.textures)
+            texture(description);
+        for (const Params& area_light : description_.stated.area_lights) {
+            Surface unlit;
+            read_emission(area_light, unlit);
+        }
+        for (const ShapeDescription& shape : description_.stated.unplaced_shapes) {
+            std::vector<std::string> untold;
+            named_in(shape.params, [&] {
+                return make_shape(shape.type,
+                                  {shape.params, base_dir_,
+                                   [](const std::string&) { return false; }, untold,
+                                   [](const auto&, const auto&) { return 0.0; }, shape.model});
+            });
+        }
+    }
+
+    void check_overrides_are_worn() const {
+        for (const auto& [name, file] : options_.cloths) {
+            if (worn_.contains(name))
+                continue;
+            std::string expected = fmt::format("a shape that wears \"{}\"", name);
+            if (name.empty())
+                expected = "a glTF shape to wear the cloth that is for all materials";
+            else if (names_met_.empty())
+                expected = "a named material, of which it has none";
+            else if (!names_met_.contains(name))
+                expected = fmt::format("a material of its own: {}", fmt::join(names_met_, ", "));
+            throw FileError(description_.path.string(), "", expected,
+                            name.empty() ? fmt::format("none for {}", file.string())
+                                         : fmt::format("\"{}\" for {}", name, file.string()));
         }
     }
 
@@ -141,10 +200,10 @@ class Builder {
         for (size_t i = 0; i < lights.size(); ++i)
             if (lights[i]->is_delta()) {
                 const LightDescription& light = description_.lights[i];
-                throw FileError(light.params.path(), light.params.line(),
-                                "lights of some size where there is a Shape \"fibers\", for no "
-                                "path through smooth fibres meets a point or a single direction",
-                                fmt::format("LightSource \"{}\"", light.type));
+                light.params.fail("",
+                                  "lights of some size where there is a Shape \"fibers\", for no "
+                                  "path through smooth fibres meets a point or a single direction",
+                                  fmt::format("LightSource \"{}\"", light.type));
             }
     }
 
@@ -155,15 +214,24 @@ class Builder {
             names_met_.insert(part);
         if (shape.type == "gltf")
             for (const std::string& name : {part, std::string()})
-                if (const auto found = overrides_.find(name); found != overrides_.end())
-                    return found->second;
+                if (const MaterialPointer cloth = override_of(name))
+                    return cloth;
         if (const auto named = description_.named_materials.find(part);
             named != description_.named_materials.end())
             return named->second;
         if (!shape.material)
             return nullptr;
-        const auto found = overrides_.find(shape.material->name);
-        return found != overrides_.end() && !found->first.empty() ? found->second : shape.material;
+        const MaterialPointer cloth =
+            shape.material->name.empty() ? nullptr : override_of(shape.material->name);
+        return cloth ? cloth : shape.material;
+    }
+
+    MaterialPointer override_of(const std::string& name) {
+        const auto found = overrides_.find(name);
+        if (found == overrides_.end())
+            return nullptr;
+        worn_.insert(name);
+        return found->second;
     }
 
     static std::shared_ptr<const Bsdf> bsdf(const BaseColor& color) {
@@ -183,7 +251,9 @@ class Builder {
             return nullptr;
         auto& made = textures_[description.get()];
         if (!made)
-            made = make_imagemap(description->params, description->base_dir);
+            made = named_in(description->params, [&] {
+                return make_imagemap(description->params, description->base_dir);
+            });
         return made;
     }
 
@@ -208,27 +278,43 @@ class Builder {
     std::shared_ptr<const Bsdf> bsdf(const MaterialPointer& material) {
         auto& made = materials_[material.get()];
         if (!made)
-            made = make_material(material->type,
-                                 {material->params, material->base_dir, options_.load_table});
+            made = named_in(material->params, [&] {
+                return make_material(material->type,
+                                     {material->params, material->base_dir, options_.load_table});
+            });
         return made;
     }
 
     /// AreaLightSource "diffuse": "rgb L" radiance, "float scale", "bool twosided".
-    static void set_emission(const Params& params, Surface& surface) {
+    static void read_emission(const Params& params, Surface& surface) {
         surface.emission = light_radiance(params);
         surface.two_sided_emission = params.get_bool("twosided", false);
         params.check_all_used();
+    }
+
+    static void set_emission(const ShapeDescription& shape, Surface& surface) {
+        read_emission(*shape.area_light, surface);
+        float area = 0; // in single precision, as the light takes it
+        for (const glm::uvec3& t : surface.mesh->triangles) {
+            const auto& p = surface.mesh->positions;
+            area += glm::length(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x])) / 2;
+        }
+        if (!std::isfinite(2 * static_cast<float>(kPi) * area * luminance(surface.emission)))
+            shape.params.fail("", "an area light whose power is a number",
+                              "one too large or too bright");
     }
 
     const SceneDescription& description_;
     const BuildOptions& options_;
     std::vector<std::string>& warnings_;
     std::filesystem::path base_dir_;
+    ViewVolume view_;
     std::map<std::string, MaterialPointer> overrides_;
     std::map<const MaterialDescription*, std::shared_ptr<const Bsdf>> materials_;
     std::map<const TextureDescription*, std::shared_ptr<const PictureTexture>> textures_;
     std::map<std::shared_ptr<const EncodedPicture>, std::shared_ptr<const Picture>> pictures_;
     std::set<std::string> names_met_;
+    std::set<std::string> worn_; ///< names of the overrides that a shape took
 };
 
 } // namespace

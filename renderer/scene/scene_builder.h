@@ -14,8 +14,8 @@ namespace rapport {
 
 struct BuildOptions {
     /// Named material, of the scene or of a glTF model, → the cloth (.bsdf, .toml, .wif) that
-    /// replaces it; the empty name stands for every glTF material that is not listed. A name that
-    /// occurs nowhere is a FileError.
+    /// replaces it; the empty name stands for every glTF material that is not listed. One
+    /// that no shape wears is a FileError.
     std::map<std::string, std::filesystem::path> cloths;
     /// How materials get their tables; see TableLoader.
     LoadTable load_table;

@@ -58,6 +58,13 @@ struct SceneDescription {
     std::vector<LightDescription> lights;
     std::vector<ShapeDescription> shapes;
     std::map<std::string, std::shared_ptr<const MaterialDescription>> named_materials;
+    /// What the file states, whether anything uses it or not: mistakes are told there too.
+    struct {
+        std::vector<std::shared_ptr<const MaterialDescription>> materials;
+        std::vector<std::shared_ptr<const TextureDescription>> textures;
+        std::vector<Params> area_lights;
+        std::vector<ShapeDescription> unplaced_shapes; ///< of objects without an instance
+    } stated;
 };
 
 } // namespace rapport

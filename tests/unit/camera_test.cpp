@@ -73,5 +73,40 @@ TEST(Camera, SeenLengthIsThatOnTheFilmWhereASegmentStandsSquare) {
     EXPECT_NEAR(camera.seen_length(eye, eye + glm::dvec3(0, 0, 7)), 100, 1e-4);
 }
 
+TEST(ViewVolume, IsThePictureAndAsMuchRoundASegmentAsItIsLong) {
+    Camera camera;
+    camera.resolution = {400, 200};
+    camera.fov_degrees = 60;
+    // At (1, 2, 3), looking along −x, with y to the right and z up, as in FollowsItsTransformation.
+    camera.to_world = glm::mat4(glm::vec4(0, 10, 0, 0), glm::vec4(0, 0, 10, 0),
+                                glm::vec4(-10, 0, 0, 0), glm::vec4(1, 2, 3, 1));
+    /// An upright segment of `length` about a place right of, above and before the eye.
+    const auto shows = [&](double right, double up, double before, double length) {
+        const glm::dvec3 place(1 - before, 2 + right, 3 + up), half(0, 0, length / 2);
+        return ViewVolume(camera).may_show(place - half, place + half);
+    };
+    const double t = std::tan(radians(30.0));
+    for (const double sign : {-1, 1}) {
+        EXPECT_TRUE(shows(sign * 2 * t * 5, 0, 5, 1e-3)); // the sides of the picture, 2:1
+        EXPECT_FALSE(shows(sign * 2.1 * t * 5, 0, 5, 1e-3));
+        EXPECT_TRUE(shows(0, sign * t * 5, 5, 1e-3));
+        EXPECT_FALSE(shows(0, sign * 1.1 * t * 5, 5, 1e-3));
+    }
+    EXPECT_FALSE(shows(0, 0, -1, 0.9)); // behind the eye
+    EXPECT_TRUE(shows(0, 0, -1, 1.1));
+    const double apart = std::hypot(1, 2 * t); // moves it by 1 m off the right side
+    EXPECT_TRUE(shows(2 * t * 5 + 0.99 * apart, 0, 5, 1));
+    EXPECT_FALSE(shows(2 * t * 5 + 1.01 * apart, 0, 5, 1));
+
+    camera.kind = Camera::Kind::orthographic;
+    camera.screen_window = {-3, 1, -2, 5}; // times the scale of 10
+    EXPECT_TRUE(shows(-30, 0, 500, 1e-3));
+    EXPECT_FALSE(shows(-30.1, 0, 500, 1e-3));
+    EXPECT_TRUE(shows(10, 50, 500, 1e-3));
+    EXPECT_FALSE(shows(10.1, 0, 500, 1e-3));
+    EXPECT_FALSE(shows(0, -20.1, 500, 1e-3));
+    EXPECT_FALSE(shows(0, 0, -1, 0.5));
+}
+
 } // namespace
 } // namespace rapport

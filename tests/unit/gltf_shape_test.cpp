@@ -101,6 +101,29 @@ TEST(Tangents, LeadTheWarpOnRequestAlone) {
     expect_warp(make(mirrored, {kTangents}).mesh(), {y, x, 0}, {x, -y, 0});
 }
 
+TEST(Tangents, GoWithMorphTargetsAndSkins) {
+    const float x = std::cos(radians(30.0f)), y = std::sin(radians(30.0f));
+    GltfWriter morphed = quad_with_tangents(1);
+    std::vector<float> turn; // to +y
+    for (int v = 0; v < 4; ++v)
+        turn.insert(turn.end(), {-x, 1 - y, 0});
+    morphed.json["meshes"][0]["primitives"][0]["targets"] = {
+        {{"TANGENT", morphed.add_array(turn, tests::kFloat, "VEC3")}}};
+    morphed.json["meshes"][0]["weights"] = {1};
+    expect_warp(make(morphed, {kTangents}).mesh(), {-1, 0, 0}, {0, 1, 0});
+
+    GltfWriter skinned = quad_with_tangents(1);
+    auto& attributes = skinned.json["meshes"][0]["primitives"][0]["attributes"];
+    attributes["JOINTS_0"] =
+        skinned.add_array(std::vector<uint8_t>(16, 0), tests::kUnsignedByte, "VEC4");
+    attributes["WEIGHTS_0"] = skinned.add_array(
+        std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, tests::kFloat, "VEC4");
+    skinned.json["skins"] = {{{"joints", {1}}}};
+    skinned.json["nodes"] = {{{"mesh", 0}, {"skin", 0}},
+                             {{"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}}};
+    expect_warp(make(skinned, {kTangents}).mesh(), {-x, -y, 0}, {-y, x, 0});
+}
+
 TEST(Tangents, AreInterpolatedOverAFace) {
     GltfWriter file = quad_with_tangents(1);
     const std::vector<float> fan{1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
@@ -166,6 +189,35 @@ TEST(Tangents, OfASharedModelDifferFromItsUvs) {
     EXPECT_LT(cosines[cosines.size() / 100], 0.99f);
 }
 
+TEST(Summary, CountsWhatWasMended) {
+    const auto told = [](const std::vector<float>& positions, const std::vector<uint16_t>& indices,
+                         double level) {
+        std::vector<float> uvs;
+        for (size_t i = 0; i < positions.size(); i += 3)
+            uvs.insert(uvs.end(), {positions[i], positions[i + 1]}); // mirrored: v runs down
+        GltfWriter file;
+        const int p = file.add_array(positions, tests::kFloat, "VEC3");
+        const int uv = file.add_array(uvs, tests::kFloat, "VEC2");
+        const int i = file.add_array(indices, tests::kUnsignedShort, "SCALAR");
+        file.add_mesh({{"attributes", {{"POSITION", p}, {"TEXCOORD_0", uv}}}, {"indices", i}});
+        file.add_node({{"mesh", 0}});
+        return make(file, {number("integer", "level", level)});
+    };
+    const std::vector<float> bow_tie{0, 0, 0, -1, -1, 0, -1, 1, 0, 1, 1, 0, 1, -1, 0};
+    const std::vector<float> unwelded{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0};
+    const std::vector<float> line{0, 0, 0, 1, 0, 0, 0.5, 0, 0, 0, 1, 0};
+    EXPECT_TRUE(told(bow_tie, {0, 2, 1, 0, 4, 3}, 2).tells("1 vertices where pieces meet"));
+    EXPECT_TRUE(told(unwelded, {0, 1, 2, 3, 4, 5}, 2).tells("2 repeated vertices merged"));
+    EXPECT_TRUE(told(line, {1, 0, 2, 0, 1, 3}, 2).tells("1 triangles without area"));
+    for (const double level : {0, 2})
+        EXPECT_TRUE(told(unwelded, {0, 1, 2, 3, 4, 5}, level).tells("2 faces with mirrored UVs"));
+    // Level 0 tells of mended frames as well: those whose UVs cover no area.
+    GltfWriter singular = quad();
+    singular.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+        singular.add_array(std::vector<float>{0, 1, 1, 1, 1, 0, 0.5, 0.5}, tests::kFloat, "VEC2");
+    EXPECT_TRUE(make(singular, {number("integer", "level", 0)}).tells("1 vertices given the warp"));
+}
+
 TEST(Strain, IsThatOfTheClothOnTheSurface) {
     const float shear = radians(20.0f);
     CleanMesh mesh = sheet(4, [](float, float) { return 0.0f; });
@@ -196,6 +248,10 @@ TEST(Strain, IsToldWhereItIsMuchOrAskedFor) {
     EXPECT_FALSE(make(narrow, {}, false).tells("stretched")); // no cloth
     const FileError error = refusal([] { make(quad(), {number("float", "uvscale", 0)}); });
     EXPECT_TRUE(mentions(error, "above 0 m"));
+    Param word{.type = "string", .name = "uvscale", .numbers = {}, .strings = {"auto"}};
+    EXPECT_TRUE(make(narrow, {word}).tells("with 0.707 m to a unit of UV"));
+    word.strings = {"cm"};
+    EXPECT_TRUE(mentions(refusal([&] { make(quad(), {word}); }), "\"auto\""));
 }
 
 } // namespace

@@ -25,7 +25,11 @@ TEST(Gltf, MissingOrShortBufferFileIsRefused) {
     const GltfWriter file = quad();
     const tests::TemporaryFolder folder;
     tests::write_bytes(folder / "model.gltf", file.with_buffer_file("data.bin"));
-    EXPECT_TRUE(mentions(refusal([&] { read_gltf(folder / "model.gltf"); }), "data.bin"));
+    const FileError missing = refusal([&] { read_gltf(folder / "model.gltf"); });
+    EXPECT_TRUE(mentions(missing, "data.bin"));
+    EXPECT_EQ(missing.place, "buffers[0].uri");
+    EXPECT_EQ(refusal([&] { read(file.with_buffer_file(""), "model.gltf"); }).place,
+              "buffers[0].uri");
     tests::write_bytes(folder / "data.bin", file.buffer.substr(1));
     EXPECT_FALSE(mentions(refusal([&] { read_gltf(folder / "model.gltf"); }), "accepted"));
     EXPECT_FALSE(mentions(refusal([&] { read_gltf(folder / "none.glb"); }), "accepted"));
@@ -63,6 +67,56 @@ TEST(Gltf, MirroredNodeKeepsTheFaceSide) {
     EXPECT_TRUE(has_warning(model, "nodes[0]: mirrored"));
     file.json["nodes"][0]["scale"] = {-1, -1, 1}; // a half turn
     EXPECT_FALSE(has_warning(read(file.glb()), "mirrored"));
+}
+
+TEST(Gltf, FlattenedNodesShowWhatIsLeft) {
+    GltfWriter file = quad();
+    file.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+        file.add_array(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, kFloat, "VEC3");
+    file.json["nodes"][0]["scale"] = {1, 1, 0};
+    const GltfModel flat = read(file.glb());
+    expect_unit_quad(flat);
+    EXPECT_TRUE(flat.parts.at(0).mesh.normals.empty()); // they cannot be carried over
+    EXPECT_TRUE(flat.warnings.empty());
+    file.json["nodes"][0]["scale"] = {1, 0, 0};
+    EXPECT_TRUE(mentions(refusal(file), "none (nodes[0]: its transform leaves no surface"));
+    file.add_node({{"mesh", 0}});
+    EXPECT_TRUE(has_warning(read(file.glb()), "nodes[0]: its transform leaves no surface"));
+}
+
+TEST(Gltf, WhatIsIgnoredIsCounted) {
+    GltfWriter file = quad();
+    json& primitive = file.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["COLOR_0"] =
+        file.add_array(std::vector<float>(12, 0.5f), kFloat, "VEC3");
+    primitive["material"] = 0;
+    file.json["meshes"].push_back(file.json["meshes"][0]);
+    file.add_node({{"mesh", 0}});
+    file.add_node({{"mesh", 1}});
+    file.json["materials"] = {{{"emissiveFactor", {0, 1, 0}}, {"alphaMode", "MASK"}},
+                              {{"alphaMode", "BLEND"}}}; // which nothing wears
+    const GltfModel model = read(file.glb());
+    EXPECT_EQ(model.warnings.size(), 3u);
+    EXPECT_TRUE(has_warning(model, "2 primitives with vertex colours (COLOR_0)"));
+    EXPECT_TRUE(has_warning(model, "1 materials with emission"));
+    EXPECT_TRUE(has_warning(model, "1 materials with transparency"));
+}
+
+TEST(Gltf, DamageIsNamedAlsoWithoutAScene) {
+    GltfWriter file = quad();
+    file.json["nodes"] = json::array();
+    file.json["accessors"][0]["count"] = 5;
+    EXPECT_TRUE(refusal(file).place.starts_with("meshes[0].primitives[0]")) << refusal(file).what();
+    file.json["asset"]["minVersion"] = "2.1";
+    EXPECT_EQ(refusal(file).place, "asset.minVersion");
+}
+
+TEST(Gltf, ABadDataUriIsCut) {
+    const std::string uri = "data:image/webp;base64," + std::string(1000, 'A');
+    const FileError error = refusal([&] { read(quad().with_buffer_file(uri), "model.gltf"); });
+    EXPECT_TRUE(mentions(error, "data:image/webp;base64,AAA")) << error.what();
+    EXPECT_EQ(error.place, "buffers[0].uri");
+    EXPECT_LT(std::string(error.what()).size(), 400u);
 }
 
 TEST(Gltf, OneMeshShownByManyNodes) {

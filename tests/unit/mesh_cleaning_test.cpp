@@ -31,6 +31,10 @@ TEST(MeshCleaning, MergesByValueAndDropsTheUnused) {
     EXPECT_EQ(merged.position_index, (std::vector<glm::uvec3>{{0, 1, 2}, {2, 1, 3}}));
     EXPECT_EQ(merged.uv_index, (std::vector<glm::uvec3>{{0, 1, 2}, {2, 1, 3}}));
     EXPECT_EQ(merged.positions[3], glm::vec3(1, 1, 0));
+    EXPECT_EQ(merged.dropped.vertices, 2u);
+    mesh.uvs[3].x += 1; // a seam repeats no vertex
+    mesh.uvs[4].x += 1;
+    EXPECT_EQ(CleanMesh(mesh).dropped.vertices, 0u);
 }
 
 TEST(MeshCleaning, UvsThatDifferStayApart) {
@@ -58,6 +62,7 @@ TEST(MeshCleaning, DropsWhatIsNoSurfaceAndCountsIt) {
     const CleanMesh cleaned(mesh);
     EXPECT_EQ(cleaned.dropped.degenerate, 2u);
     EXPECT_EQ(cleaned.dropped.repeated, 2u);
+    EXPECT_EQ(cleaned.dropped.collinear, 1u);
     EXPECT_EQ(cleaned.position_index, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 1, 3}}));
     EXPECT_EQ(cleaned.uv_index, (std::vector<glm::uvec3>{{0, 0, 0}, {0, 0, 1}}));
     EXPECT_EQ(cleaned.positions.size(), 4u); // (7, 7, 7) is used by nobody now
@@ -75,6 +80,7 @@ TEST(Manifold, SoundMeshesStayWhole) {
     EXPECT_EQ(cut.origin.size(), 4u);
     EXPECT_EQ(cut.attached_vertices, 4u);
     EXPECT_EQ(cut.non_manifold_edges, 0u);
+    EXPECT_EQ(cut.bow_ties, 0u);
     for (size_t t = 0; t < 4; ++t)
         for (int c = 0; c < 3; ++c) {
             EXPECT_EQ(cut.origin[cut.triangles[t][c]], tetrahedron[t][c]);
@@ -87,6 +93,7 @@ TEST(Manifold, CutsBowTies) {
     const std::vector<glm::uvec3> bow_tie = {{0, 1, 2}, {0, 3, 4}};
     const ManifoldMesh cut = cut_to_manifold(bow_tie, none_detached(bow_tie));
     EXPECT_EQ(cut.origin.size(), 6u);
+    EXPECT_EQ(cut.bow_ties, 1u);
     EXPECT_NE(cut.triangles[0].x, cut.triangles[1].x);
     EXPECT_TRUE(cut.pinned[cut.triangles[0].x]);
     EXPECT_TRUE(cut.pinned[cut.triangles[1].x]);

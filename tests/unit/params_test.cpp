@@ -94,7 +94,7 @@ TEST(Params, RefusesWrongTypesCountsAndValues) {
     wrong.add({"point3", "P", {1, 2, 3, 4}, {}, 6, 1});
     wrong.add({"point2", "uv", {1, 2, 3}, {}, 7, 1});
     wrong.add({"rgb", "pair", {1, 2}, {}, 8, 1});
-    wrong.add({"spectrum", "metal", {}, {"metal-Ag-eta"}, 9, 1});
+    wrong.add({"float", "greys", {1, 2}, {}, 9, 1});
     wrong.add({"float", "none", {}, {}, 10, 1});
     wrong.add({"integer", "nothing", {}, {}, 11, 1});
     EXPECT_EQ(error_of([&] { wrong.get_int("half", 0); }).place, "2:1");
@@ -104,7 +104,8 @@ TEST(Params, RefusesWrongTypesCountsAndValues) {
     EXPECT_EQ(error_of([&] { wrong.get_point3s("P"); }).place, "6:1");
     EXPECT_EQ(error_of([&] { wrong.get_point2s("uv"); }).place, "7:1");
     EXPECT_EQ(error_of([&] { wrong.get_rgb("pair", Rgb(0)); }).place, "8:1");
-    EXPECT_EQ(error_of([&] { wrong.get_rgb("metal", Rgb(0)); }).found, "\"metal-Ag-eta\"");
+    EXPECT_EQ(error_of([&] { wrong.get_rgb("greys", Rgb(0)); }).found, "2 values");
+    EXPECT_EQ(error_of([&] { wrong.get_rgb("nan", Rgb(0)); }).place, "4:1");
     EXPECT_EQ(error_of([&] { wrong.get_float("none", 0); }).found, "0 values");
     EXPECT_EQ(error_of([&] { wrong.get_int("nothing", 0); }).found, "0 values");
 }

@@ -7,6 +7,7 @@
 #include "renderer/scene/pbrt/pbrt_parser.h"
 #include "renderer/scene/scene_builder.h"
 #include "renderer/scene/shape/shape.h"
+#include "tests/support/gltf_models.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/small_scenes.h"
 #include "tests/support/temporary_folder.h"
@@ -231,6 +232,58 @@ TEST_F(SceneBuilder, RefusesWithChoices) {
     contains(refusal("LightSource \"infinite\" \"string filename\" \"absent.exr\""), "absent.exr");
     contains(refusal(kTriangle, {{{"Body", "satin.bsdf"}}, {}, {}}), "Body");
     contains(refusal(kTriangle, {{}, {}, {{"Body", "navy"}}}), "a cloth for each");
+    contains(refusal(kTriangle, {{{"", "satin.bsdf"}}, {}, {}}), "a glTF shape to wear the cloth");
+    contains(
+        refusal("MakeNamedMaterial \"Body\" \"string type\" \"diffuse\"\n" + std::string(kTriangle),
+                {{{"Body", "satin.bsdf"}}, {}, {}}),
+        "a shape that wears \"Body\"");
+}
+
+TEST_F(SceneBuilder, RefusesWithThePlaceInTheScene) {
+    const auto refused = [&](const std::string& world, const std::string& part) {
+        const std::string message = refusal(world);
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+    };
+    std::ofstream(folder_ / "torn.png") << "\x89PNG";
+    const std::string texture = "Texture \"t\" \"spectrum\" \"imagemap\" ";
+    for (const std::string shape : {"", kTriangle}) { // used or not
+        refused("Material \"velvet\"\n" + shape, "scene.pbrt:2:10: expected a material");
+        refused("Material \"diffuse\" \"float gloss\" 1\n" + shape, "scene.pbrt:2:20: ");
+        refused("AreaLightSource \"diffuse\" \"float M\" 1\n" + shape, "scene.pbrt:2:27: ");
+    }
+    refused("MakeNamedMaterial \"a\" \"string type\" \"velvet\"",
+            "scene.pbrt:2:23: expected a mat");
+    refused("LightSource \"sun\"", "scene.pbrt:2:13: expected a light");
+    refused("Shape \"torus\"", "scene.pbrt:2:7: expected a shape");
+    refused("ObjectBegin \"o\"\nShape \"torus\"\nObjectEnd", "scene.pbrt:3:7: expected a shape");
+    refused(texture + "\"string filname\" \"a.png\"", "scene.pbrt:2:9: ");
+    refused(texture + "\"string filename\" \"a.png\" \"float uscal\" 1", "scene.pbrt:2:61: ");
+    for (const char* const file : {"absent.png", "torn.png"})
+        refused(texture + "\"string filename\" \"" + file + "\"", "scene.pbrt:2:9)");
+    refused("LightSource \"infinite\" \"string filename\" \"absent.exr\"", "scene.pbrt:2:13)");
+    refused("Shape \"gltf\" \"string filename\" \"absent.glb\"", "scene.pbrt:2:7)");
+    // What nothing wears needs no table, for the caller may have replaced it.
+    build("Material \"cloth\" \"string filename\" \"absent.bsdf\"");
+}
+
+TEST_F(SceneBuilder, RefusesWhatSinglePrecisionCannotTrace) {
+    const auto refused = [&](const std::string& world, const std::string& expected) {
+        EXPECT_NE(refusal(world).find("scene.pbrt:3:7" + expected), std::string::npos)
+            << refusal(world);
+    };
+    tests::write_bytes(folder_ / "model.glb", tests::quad().glb());
+    const std::string light = " AreaLightSource \"diffuse\"\n",
+                      far = "1 0 0 0  0 1 0 0  0 0 1 0  0 0 1e18 1]\n";
+    for (const std::string shape : {kTriangle, "Shape \"disk\"", "Shape \"sphere\"",
+                                    "Shape \"gltf\" \"string filename\" \"model.glb\""}) {
+        refused("Scale 1e20 1e20 1e20\n" + shape, ": expected positions below 1e18");
+        refused("ConcatTransform [" + far + shape, ": expected positions below 1e18");
+        refused("Scale 1e17 1e17 1e17" + light + shape, ": expected an area light");
+    }
+    refused("AreaLightSource \"diffuse\" \"rgb L\" [1e38 1e38 1e38] Scale 9 9 9\n" +
+                std::string(kTriangle),
+            ": expected an area light");
+    EXPECT_EQ(build("Scale 1e9 1e9 1e9" + light + kTriangle).surfaces().size(), 1u);
 }
 
 TEST_F(SceneBuilder, AClothNeedsUvs) {

@@ -5,18 +5,25 @@
 #include "renderer/scene/gltf/gltf_material.h"
 #include "renderer/scene/gltf/gltf_primitive.h"
 #include "renderer/scene/gltf/gltf_skin.h"
+#include "renderer/scene/mesh/mesh_operations.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <optional>
+#include <set>
 
 namespace rapport {
 namespace {
 
-/// Bounds on what many nodes that show one mesh may ask for, and on coordinates, which ray tracing
-/// in single precision must be able to square.
+/// Bound on what many nodes that show one mesh may ask for.
 constexpr size_t kMaxTriangles = size_t{1} << 28;
-constexpr float kMaxCoordinate = 1e18f;
+
+/// Whether a map takes any triangle to one with an area.
+bool keeps_areas(const glm::dmat3& map) {
+    const glm::dvec3 none(0);
+    return glm::cross(map[0], map[1]) != none || glm::cross(map[1], map[2]) != none ||
+           glm::cross(map[2], map[0]) != none;
+}
 
 class ModelReader {
   public:
@@ -32,10 +39,16 @@ class ModelReader {
                 shows_mesh = true;
                 place_mesh(node);
             }
-        if (!shows_mesh)
+        if (!shows_mesh) {
+            for (size_t mesh = 0; mesh < file_.meshes.size(); ++mesh) // what is damaged comes first
+                primitives_of(static_cast<int>(mesh));
             fail("", "a scene with a node that shows a mesh", "none");
+        }
         if (model_.parts.empty())
-            fail("", "meshes with triangles", "none");
+            fail("", "meshes with triangles",
+                 model_.warnings.empty() ? "none"
+                                         : fmt::format("none ({})", model_.warnings.back()));
+        tell_ignored();
         return std::move(model_);
     }
 
@@ -54,8 +67,8 @@ class ModelReader {
         // A skinned mesh goes where its joints are, not where its node is.
         const glm::dmat4 to_world = node.skin >= 0 ? glm::dmat4(1) : *nodes_.to_world(node_index);
         const double determinant = glm::determinant(glm::dmat3(to_world));
-        if (determinant == 0 || !std::isfinite(determinant)) {
-            warn(place, "its transform cannot be inverted: ignored");
+        if (!std::isfinite(determinant) || !keeps_areas(glm::dmat3(to_world))) {
+            warn(place, "its transform leaves no surface: ignored");
             return;
         }
         const tinygltf::Mesh& mesh = file_.meshes[static_cast<size_t>(node.mesh)];
@@ -138,6 +151,10 @@ class ModelReader {
         }
         for (glm::vec3& warp : mesh.warps)
             warp = glm::dmat3(to_world) * glm::dvec3(warp);
+        if (glm::determinant(glm::dmat3(to_world)) == 0) { // flattened: all lies in one plane
+            mesh.normals.clear();
+            mesh.normal_index.clear();
+        }
         const glm::dmat3 normal_map = glm::transpose(glm::inverse(glm::dmat3(to_world)));
         for (glm::vec3& n : mesh.normals) {
             const glm::dvec3 normal = normal_map * glm::dvec3(n);
@@ -149,6 +166,33 @@ class ModelReader {
                 for (glm::uvec3& triangle : *index)
                     std::swap(triangle.y, triangle.z);
         return mesh;
+    }
+
+    /// What would change the base colour where the scene states no material.
+    void tell_ignored() {
+        std::set<int> meshes, materials;
+        for (const int node : nodes_.in_order())
+            meshes.insert(file_.nodes[static_cast<size_t>(node)].mesh);
+        meshes.erase(-1);
+        size_t coloured = 0, shining = 0, transparent = 0;
+        for (const int mesh : meshes)
+            for (const tinygltf::Primitive& primitive :
+                 file_.meshes[static_cast<size_t>(mesh)].primitives) {
+                coloured += primitive.attributes.contains("COLOR_0");
+                materials.insert(primitive.material);
+            }
+        materials.erase(-1);
+        for (const int index : materials) {
+            const tinygltf::Material& material = file_.materials[static_cast<size_t>(index)];
+            shining += std::ranges::any_of(material.emissiveFactor, [](double c) { return c > 0; });
+            transparent += material.alphaMode != "OPAQUE";
+        }
+        for (const auto& [count, what] :
+             {std::pair{coloured, "primitives with vertex colours (COLOR_0), which are ignored"},
+              {shining, "materials with emission, which is ignored"},
+              {transparent, "materials with transparency (alphaMode), which is ignored"}})
+            if (count > 0)
+                model_.warnings.push_back(fmt::format("{} {}", count, what));
     }
 
     void warn(const std::string& place, const std::string& text) {

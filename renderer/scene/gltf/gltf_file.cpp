@@ -137,9 +137,32 @@ std::vector<char> with_json(const std::vector<char>& file, bool binary, std::str
 
 std::string one_line(std::string text) {
     text.erase(text.find_last_not_of(" \n\r") + 1);
+    constexpr size_t kMostOfData = 60; // its media type, and what follows
+    if (const size_t data = text.find("data:");
+        data != std::string::npos && text.size() > data + kMostOfData)
+        text = text.substr(0, data + kMostOfData) + "…";
     for (char& c : text)
         c = c == '\n' || c == '\r' ? ' ' : c;
     return text;
+}
+
+/// Every buffer has its bytes somewhere; the first of a GLB may have them in the file itself.
+void check_buffers(const nlohmann::json& root, bool binary, const std::string& path) {
+    const nlohmann::json buffers = root.value("buffers", nlohmann::json::array());
+    for (size_t i = binary ? 1 : 0; i < buffers.size(); ++i)
+        if (!buffers[i].contains("uri"))
+            throw FileError(path, fmt::format("buffers[{}].uri", i), "a file or data", "none");
+}
+
+/// The buffer whose uri tinygltf's message quotes, or nothing.
+std::string place_of(const std::string& message, const nlohmann::json& root) {
+    const nlohmann::json buffers = root.value("buffers", nlohmann::json::array());
+    for (size_t i = 0; i < buffers.size(); ++i)
+        if (const nlohmann::json uri = buffers[i].value("uri", nlohmann::json());
+            uri.is_string() && !uri.get_ref<const std::string&>().empty() &&
+            message.find(uri.get_ref<const std::string&>()) != std::string::npos)
+            return fmt::format("buffers[{}].uri", i);
+    return "";
 }
 
 } // namespace
@@ -155,6 +178,7 @@ tinygltf::Model load_gltf_file(const std::filesystem::path& path,
         throw FileError(name, "header", "'glTF'", "another beginning");
     nlohmann::json root = read_gltf_json(
         binary ? glb_json(file, name) : std::string_view(file.data(), file.size()), name, warnings);
+    check_buffers(root, binary, name);
     const ViewlessAccessors viewless(root);
     if (!viewless.empty())
         file = with_json(file, binary, root.dump());
@@ -178,7 +202,7 @@ tinygltf::Model load_gltf_file(const std::filesystem::path& path,
         error = exception.what();
     }
     if (!loaded)
-        throw FileError(name, "", "a valid glTF 2.0 file", one_line(error));
+        throw FileError(name, place_of(error, root), "a valid glTF 2.0 file", one_line(error));
     viewless.release(model);
     return model;
 }

@@ -63,6 +63,8 @@ class Checker {
             throw FileError(path_, "asset.version", "\"2.0\"", "none");
         if (!asset["version"].is_string() || !asset["version"].get<std::string>().starts_with("2."))
             fail("asset.version", "\"2.0\"", asset["version"]);
+        if (asset.contains("minVersion") && asset["minVersion"] != "2.0")
+            fail("asset.minVersion", "\"2.0\"", asset["minVersion"]);
         check_required_extensions(root);
         for (const char* section :
              {"scenes", "nodes", "meshes", "skins", "accessors", "bufferViews", "buffers",

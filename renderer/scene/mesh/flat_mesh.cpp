@@ -7,7 +7,7 @@
 
 namespace rapport {
 
-TriangleMesh flat_mesh(const IndexedMesh& mesh) {
+TriangleMesh flat_mesh(const IndexedMesh& mesh, SubdivisionReport* report) {
     const bool has_uvs = !mesh.uv_index.empty(), has_normals = !mesh.normal_index.empty();
     const std::vector<glm::vec3> smooth = smooth_normals(mesh.positions, mesh.position_index);
     TriangleMesh result;
@@ -34,10 +34,15 @@ TriangleMesh flat_mesh(const IndexedMesh& mesh) {
                 result.normals.back() = away ? -unit : unit;
             }
         }
+    SubdivisionReport unread;
+    SubdivisionReport& counts = report ? *report : unread;
+    counts = {.faces = mesh.position_index.size()};
     if (!has_uvs)
         return result;
+    for (size_t t = 0; t < counts.faces; ++t)
+        counts.mirrored += has_mirrored_uvs(mesh, t);
     if (mesh.warps.empty()) {
-        add_frames(result);
+        counts.frames_repaired = add_frames(result);
         return result;
     }
     std::vector<char> sound(result.positions.size());
@@ -49,7 +54,7 @@ TriangleMesh flat_mesh(const IndexedMesh& mesh) {
         result.warp[vertex] = frame.warp;
         sound[vertex] = frame.sound;
     }
-    repair_frames(result, std::move(sound));
+    counts.frames_repaired = repair_frames(result, std::move(sound));
     return result;
 }
 

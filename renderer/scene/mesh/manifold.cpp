@@ -62,7 +62,10 @@ ManifoldMesh cut_to_manifold(const std::vector<glm::uvec3>& triangles,
                     const uint32_t origin = triangles[t][c];
                     vertex = static_cast<uint32_t>(cut.origin.size());
                     cut.origin.push_back(origin);
-                    pinned[origin] |= has_fan[origin];
+                    if (has_fan[origin] && !pinned[origin]) {
+                        pinned[origin] = 1;
+                        ++cut.bow_ties;
+                    }
                     has_fan[origin] = 1;
                 }
                 cut.triangles[t][c] = vertex;

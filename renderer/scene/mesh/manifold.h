@@ -20,6 +20,7 @@ struct ManifoldMesh {
     /// Vertices of detached triangles come after all others.
     uint32_t attached_vertices = 0;
     size_t non_manifold_edges = 0;
+    size_t bow_ties = 0; ///< vertices where fans meet that no such edge cut apart
 };
 
 /// Triangles named in `detached` are cut off on all sides, too. The triangles must be clean: three

@@ -109,9 +109,43 @@ glm::uvec3 sorted(glm::uvec3 t) {
     return t;
 }
 
+/// Of the vertices `before` merging, those that are another one in all of the indices after it.
+size_t count_merged(const std::vector<glm::uvec3>& before, const IndexedMesh& after) {
+    uint32_t count = 0;
+    for (const glm::uvec3& t : before)
+        count = std::max({count, t.x + 1, t.y + 1, t.z + 1});
+    std::vector<char> met(count, 0);
+    std::vector<glm::uvec3> vertices; // by position, UV, normal
+    FlatIndex known(count);
+    size_t merged = 0;
+    for (size_t t = 0; t < before.size(); ++t)
+        for (int c = 0; c < 3; ++c) {
+            if (std::exchange(met[before[t][c]], 1))
+                continue;
+            const glm::uvec3 vertex(after.position_index[t][c],
+                                    after.uv_index.empty() ? 0 : after.uv_index[t][c],
+                                    after.normal_index.empty() ? 0 : after.normal_index[t][c]);
+            const auto next = static_cast<uint32_t>(vertices.size());
+            if (known.find_or_add(mix(mix(mix(0, vertex.x), vertex.y), vertex.z), next,
+                                  [&](uint32_t other) { return vertices[other] == vertex; }) ==
+                next)
+                vertices.push_back(vertex);
+            else
+                ++merged;
+        }
+    return merged;
+}
+
+bool is_collinear(const IndexedMesh& mesh, const glm::uvec3& t) {
+    const glm::dvec3 corner = mesh.positions[t.x];
+    return glm::cross(glm::dvec3(mesh.positions[t.y]) - corner,
+                      glm::dvec3(mesh.positions[t.z]) - corner) == glm::dvec3(0);
+}
+
 } // namespace
 
 CleanMesh::CleanMesh(IndexedMesh mesh) : IndexedMesh(std::move(mesh)) {
+    const std::vector<glm::uvec3> before = position_index;
     parallel_for(3, [&](size_t kind) {
         if (kind == 0)
             merge_equal(position_index, positions);
@@ -120,6 +154,8 @@ CleanMesh::CleanMesh(IndexedMesh mesh) : IndexedMesh(std::move(mesh)) {
         else
             merge_equal(normal_index, normals);
     });
+
+    dropped.vertices = count_merged(before, *this);
 
     const std::vector<glm::uvec3>& triangles = position_index;
     FlatIndex seen(triangles.size());
@@ -138,6 +174,7 @@ CleanMesh::CleanMesh(IndexedMesh mesh) : IndexedMesh(std::move(mesh)) {
             ++dropped.repeated;
             continue;
         }
+        dropped.collinear += is_collinear(*this, triangle);
         position_index[kept] = triangle;
         if (!uv_index.empty())
             uv_index[kept] = uv_index[t];

@@ -6,11 +6,13 @@
 
 namespace rapport {
 
-/// What cleaning dropped.
+/// What cleaning dropped, and noticed.
 struct CleaningReport {
     size_t degenerate = 0; ///< triangles with two corners at one point
     size_t repeated =
         0; ///< triangles over the same three points as an earlier one, either way round
+    size_t vertices = 0;  ///< equal in everything to an earlier one, merged with it
+    size_t collinear = 0; ///< triangles with three corners on one line, which stay
 };
 
 /// A mesh with equal values merged (positions, UVs with their warps, and normals each; equal means

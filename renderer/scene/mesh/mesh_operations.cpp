@@ -1,5 +1,6 @@
 #include "renderer/scene/mesh/mesh_operations.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace rapport {
@@ -11,6 +12,12 @@ void turn_round(TriangleMesh& mesh) {
 }
 
 } // namespace
+
+bool has_far_positions(const TriangleMesh& mesh) {
+    return !std::ranges::all_of(mesh.positions, [](const glm::vec3& p) {
+        return glm::all(glm::lessThan(glm::abs(p), glm::vec3(kMaxCoordinate)));
+    });
+}
 
 void transform(TriangleMesh& mesh, const glm::mat4& matrix) {
     const glm::mat3 linear(matrix);

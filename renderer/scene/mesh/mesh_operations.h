@@ -4,6 +4,10 @@
 
 namespace rapport {
 
+/// Bound on coordinates, which ray tracing in single precision must be able to square.
+inline constexpr float kMaxCoordinate = 1e18f;
+bool has_far_positions(const TriangleMesh& mesh); ///< any at the bound, beyond it, or not finite
+
 /// Moves a mesh by an affine, invertible map. The face side stays the same side of the cloth, also
 /// under a reflection: triangles are turned round so that they still run counter-clockwise.
 void transform(TriangleMesh& mesh, const glm::mat4& matrix);

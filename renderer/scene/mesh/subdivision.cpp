@@ -20,9 +20,6 @@ namespace {
 /// with the square of it, and no garment comes near.
 constexpr uint32_t kMaxValence = 256;
 
-/// About 8 GB of limit points, mesh and BVH.
-constexpr size_t kMaxTriangles = size_t{1} << 26;
-
 constexpr size_t kFacesPerBatch = 64;
 
 std::vector<char> faces_at_crowded_vertices(const IndexedMesh& mesh) {
@@ -37,21 +34,13 @@ std::vector<char> faces_at_crowded_vertices(const IndexedMesh& mesh) {
     return flat;
 }
 
-/// Whether the UVs run clockwise as seen from the face side.
-bool is_mirrored(const IndexedMesh& mesh, size_t triangle) {
-    const glm::uvec3 t = mesh.uv_index[triangle];
-    const glm::dvec2 origin = mesh.uvs[t.x];
-    const glm::dvec2 a = glm::dvec2(mesh.uvs[t.y]) - origin, b = glm::dvec2(mesh.uvs[t.z]) - origin;
-    return a.x * b.y - a.y * b.x < 0;
-}
-
 /// Gives mirrored faces UVs of their own, so that the UV map is cut where it folds back over
 /// itself: a smooth map would stand still there and have no derivative. Returns how many there are.
 size_t separate_mirrored_faces(IndexedMesh& mesh) {
     const auto offset = static_cast<uint32_t>(mesh.uvs.size());
     size_t mirrored = 0;
     for (size_t t = 0; t < mesh.uv_index.size(); ++t)
-        if (is_mirrored(mesh, t)) {
+        if (has_mirrored_uvs(mesh, t)) {
             mesh.uv_index[t] += offset;
             ++mirrored;
         }
@@ -172,6 +161,17 @@ size_t fill_frames(TriangleMesh& result, const ControlMesh& control,
     return repair_frames(result, std::move(sound));
 }
 
+/// Cuts every edge into half as many pieces, rounded up; false if none can be cut less. Sides of
+/// equal rates, as those of one edge have, stay equal.
+bool halve(SideRates& rates) {
+    bool fell = false;
+    for (uint16_t& rate : rates) {
+        fell |= rate > 1;
+        rate = static_cast<uint16_t>((rate + 1) / 2);
+    }
+    return fell;
+}
+
 size_t count_creases(const ControlMesh& control) {
     size_t creases = 0;
     for_each_edge(control.edges, [&](std::span<const EdgeUse> edge) {
@@ -205,23 +205,27 @@ TriangleMesh subdivide(const CleanMesh& input, const SubdivisionOptions& options
         SideRates rates = side_rates(control, options.rate);
         std::optional<Tessellation> tessellation;
         std::vector<LimitPoint> points;
+        counts.coarser = 1;
         do {
-            tessellation = tessellate(control, rates, kMaxTriangles);
-            if (!tessellation)
-                throw FileError(
-                    name, "", fmt::format("a subdivision into at most {} triangles", kMaxTriangles),
-                    "more");
+            while (!(tessellation = tessellate(control, rates, options.max_triangles))) {
+                if (!halve(rates))
+                    throw FileError(name, "",
+                                    fmt::format("at most {} triangles", options.max_triangles),
+                                    "more");
+                counts.coarser *= 2;
+            }
             points = limit_points(control, surface.get(), *tessellation, flat);
             complete = flat == control.detached;
             if (!complete)
                 break;
             result.triangles = tessellation->triangles;
             fill_shape(result, *tessellation, points);
-        } while (options.finest_rate &&
+        } while (options.finest_rate && counts.coarser == 1 &&
                  refine_sharp_turns(control, *tessellation, result, options.finest_rate, rates));
         if (!complete)
             continue;
         counts.non_manifold_edges = control.cut.non_manifold_edges;
+        counts.bow_ties = control.cut.bow_ties;
         counts.t_junctions = control.t_junctions;
         counts.creases = count_creases(control);
         counts.quads = mesh.position_index.size() - control.faces.size();

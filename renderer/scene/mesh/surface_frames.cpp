@@ -81,6 +81,13 @@ WeftWarp weft_across(const glm::dvec3& warp, const glm::dvec3& normal) {
     return {glm::cross(unit, normal), unit, true};
 }
 
+bool has_mirrored_uvs(const IndexedMesh& mesh, size_t triangle) {
+    const glm::uvec3 t = mesh.uv_index[triangle];
+    const glm::dvec2 origin = mesh.uvs[t.x];
+    const glm::dvec2 a = glm::dvec2(mesh.uvs[t.y]) - origin, b = glm::dvec2(mesh.uvs[t.z]) - origin;
+    return a.x * b.y - a.y * b.x < 0;
+}
+
 size_t repair_frames(TriangleMesh& mesh, std::vector<char> sound) {
     const size_t repaired = static_cast<size_t>(std::count(sound.begin(), sound.end(), 0));
     if (repaired == 0)

@@ -27,6 +27,9 @@ WeftWarp weft_across(const glm::dvec3& warp, const glm::dvec3& normal);
 /// the normal. Returns how many were mended. The mesh needs normals.
 size_t repair_frames(TriangleMesh& mesh, std::vector<char> sound);
 
+/// Whether the UVs of a triangle run clockwise as seen from the face side.
+bool has_mirrored_uvs(const IndexedMesh& mesh, size_t triangle);
+
 /// Unit normals per vertex: the sum of the adjacent triangles' normals, weighted by their angles.
 /// (0, 0, 1) where no triangle has an area.
 std::vector<glm::vec3> smooth_normals(const std::vector<glm::vec3>& positions,

@@ -61,8 +61,8 @@ void read_value(PbrtLexer& lexer, Param& param) {
 
 } // namespace
 
-Params read_pbrt_params(PbrtLexer& lexer, const std::string& owner, int line) {
-    Params params(lexer.path(), owner, line);
+Params read_pbrt_params(PbrtLexer& lexer, const std::string& owner, const PbrtToken& place) {
+    Params params(lexer.path(), owner, place.line, place.column);
     while (lexer.peek().kind == Kind::string) {
         Param param = read_declaration(lexer);
         if (lexer.peek().kind == Kind::open) {

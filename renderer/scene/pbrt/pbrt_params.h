@@ -6,7 +6,7 @@
 namespace rapport {
 
 /// The `"type name" [values]` list that follows a directive, up to what is not a string. `owner`
-/// names the directive in messages, `line` is its place.
-Params read_pbrt_params(PbrtLexer& lexer, const std::string& owner, int line);
+/// names the directive in messages, `place` is its type or name.
+Params read_pbrt_params(PbrtLexer& lexer, const std::string& owner, const PbrtToken& place);
 
 } // namespace rapport

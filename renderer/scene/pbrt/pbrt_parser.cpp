@@ -31,6 +31,10 @@ class Parser {
     explicit Parser(const std::filesystem::path& path) {
         scene_.path = path;
         parse_file(path);
+        for (const auto& [name, object] : objects_)
+            if (!object.instanced)
+                scene_.stated.unplaced_shapes.insert(scene_.stated.unplaced_shapes.end(),
+                                                     object.shapes.begin(), object.shapes.end());
     }
 
     SceneDescription result() && { return std::move(scene_); }
@@ -45,6 +49,10 @@ class Parser {
     struct Saved {
         std::string_view begin; ///< the directive that saved
         GraphicsState state;
+    };
+    struct Object {
+        std::vector<ShapeDescription> shapes;
+        bool instanced = false;
     };
     static const std::vector<Directive>& directives();
     static constexpr int kDeepestInclude = 32;
@@ -85,11 +93,12 @@ class Parser {
 
     // Tokens
 
-    std::string read_string(const char* what) {
+    PbrtToken read_token(const char* what) {
         if (lexer_->peek().kind != Kind::string)
             throw lexer_->error(lexer_->peek(), what);
-        return lexer_->next().text;
+        return lexer_->next();
     }
+    std::string read_string(const char* what) { return read_token(what).text; }
 
     template <size_t N> std::array<double, N> read_numbers(const char* what) {
         const bool bracketed = lexer_->peek().kind == Kind::open;
@@ -109,16 +118,17 @@ class Parser {
         return numbers;
     }
 
-    Params read_params(const std::string& type) {
-        return read_pbrt_params(*lexer_, directive_.text + " \"" + type + '"', directive_.line);
+    /// Of the directive, after its type or name.
+    Params read_params(const PbrtToken& type) {
+        return read_pbrt_params(*lexer_, directive_.text + " \"" + type.text + '"', type);
     }
 
     // Directives
 
     template <void (*Read)(const std::string&, const Params&, SceneDescription&)> void option() {
-        const std::string type = read_string("a type in quotes");
+        const PbrtToken type = read_token("a type in quotes");
         const Params params = read_params(type);
-        Read(type, params, scene_);
+        Read(type.text, params, scene_);
         params.check_all_used();
     }
 
@@ -155,10 +165,16 @@ class Parser {
                                 "LookAt without a direction");
         set_ctm(state_.ctm * *matrix);
     }
-    void transform() { set_ctm(glm::make_mat4(read_numbers<16>("16 numbers").data())); }
-    void concat_transform() {
-        set_ctm(state_.ctm * glm::make_mat4(read_numbers<16>("16 numbers").data()));
+    glm::dmat4 read_matrix() {
+        const auto v = read_numbers<16>("16 numbers");
+        if (v[3] != 0 || v[7] != 0 || v[11] != 0 || v[15] != 1) // column by column
+            throw lexer_->error(directive_,
+                                "an affine matrix, every fourth number of which makes 0 0 0 1",
+                                fmt::format("{} {} {} {}", v[3], v[7], v[11], v[15]));
+        return glm::make_mat4(v.data());
     }
+    void transform() { set_ctm(read_matrix()); }
+    void concat_transform() { set_ctm(state_.ctm * read_matrix()); }
     void identity() { state_.ctm = glm::dmat4(1); }
     void coordinate_system() { coordinate_systems_[read_string("a name in quotes")] = state_.ctm; }
     void coord_sys_transform() {
@@ -175,7 +191,11 @@ class Parser {
             throw lexer_->error(directive_,
                                 fmt::format("at most {} files inside each other", kDeepestInclude),
                                 "a deeper Include");
-        parse_file(scene_.path.parent_path() / read_string("a file name in quotes"));
+        const PbrtToken name = read_token("a file name in quotes");
+        const std::filesystem::path file = scene_.path.parent_path() / name.text;
+        if (std::error_code error; !std::filesystem::is_regular_file(file, error))
+            throw lexer_->error(name, "the name of a file");
+        parse_file(file);
         --include_depth_;
     }
 
@@ -231,32 +251,34 @@ class Parser {
         const auto found = objects_.find(read_string("an object's name in quotes"));
         if (found == objects_.end())
             throw lexer_->error(token, known("object", objects_));
-        for (const ShapeDescription& shape : found->second) {
+        found->second.instanced = true;
+        for (const ShapeDescription& shape : found->second.shapes) {
             scene_.shapes.push_back(shape);
             scene_.shapes.back().to_world = glm::mat4(state_.ctm) * shape.to_world;
         }
     }
 
     void texture() {
-        const PbrtToken token = lexer_->peek();
-        const std::string name = read_string("a texture's name in quotes");
+        const PbrtToken name = read_token("a texture's name in quotes");
         for (const char* const only : {"spectrum", "imagemap"}) {
             const PbrtToken kind = lexer_->peek();
             const std::string expected = fmt::format("\"{}\"", only);
             if (read_string(expected.c_str()) != only)
                 throw lexer_->error(kind, expected);
         }
-        const auto [place, is_new] = textures_.try_emplace(name);
+        const auto [place, is_new] = textures_.try_emplace(name.text);
         if (!is_new)
-            throw lexer_->error(token, "a new name", '"' + name + "\" for the second time");
+            throw lexer_->error(name, "a new name", '"' + name.text + "\" for the second time");
         place->second = std::make_shared<const TextureDescription>(
             TextureDescription{read_params(name), scene_.path.parent_path()});
+        scene_.stated.textures.push_back(place->second);
     }
 
-    std::shared_ptr<MaterialDescription> read_material(const std::string& owner) {
+    std::shared_ptr<MaterialDescription> read_material(const PbrtToken& owner) {
         auto material = std::make_shared<MaterialDescription>();
         material->params = read_params(owner);
         material->base_dir = scene_.path.parent_path();
+        scene_.stated.materials.push_back(material);
         return material;
     }
     /// Once its type is known: only a diffuse reflectance may be a texture.
@@ -277,24 +299,23 @@ class Parser {
         material.params.add(std::move(white));
     }
     void material() {
-        const std::string type = read_string("a material's type in quotes");
+        const PbrtToken type = read_token("a material's type in quotes");
         const auto material = read_material(type);
-        material->type = type;
+        material->type = type.text;
         find_texture(*material);
         state_.material = material;
     }
     void make_named_material() {
-        const PbrtToken token = lexer_->peek();
-        const std::string name = read_string("a material's name in quotes");
-        if (scene_.named_materials.contains(name))
-            throw lexer_->error(token, "a new name", '"' + name + "\" for the second time");
+        const PbrtToken name = read_token("a material's name in quotes");
+        if (scene_.named_materials.contains(name.text))
+            throw lexer_->error(name, "a new name", '"' + name.text + "\" for the second time");
         const auto material = read_material(name);
-        material->name = name;
+        material->name = name.text;
         material->type = material->params.get_string("type", "");
         if (material->type.empty())
             material->params.fail("type", "\"string type\"", "none");
         find_texture(*material);
-        scene_.named_materials[name] = material;
+        scene_.named_materials[name.text] = material;
     }
     void named_material() {
         const PbrtToken token = lexer_->peek();
@@ -306,22 +327,24 @@ class Parser {
 
     void light_source() {
         LightDescription light;
-        light.type = read_string("a light's type in quotes");
-        light.params = read_params(light.type);
+        const PbrtToken type = read_token("a light's type in quotes");
+        light.type = type.text;
+        light.params = read_params(type);
         light.to_world = glm::mat4(state_.ctm);
         scene_.lights.push_back(std::move(light));
     }
     void area_light_source() {
-        const PbrtToken token = lexer_->peek();
-        const std::string type = read_string("\"diffuse\"");
-        if (type != "diffuse")
-            throw lexer_->error(token, "\"diffuse\"");
+        const PbrtToken type = read_token("\"diffuse\"");
+        if (type.text != "diffuse")
+            throw lexer_->error(type, "\"diffuse\"");
         state_.area_light = read_params(type);
+        scene_.stated.area_lights.push_back(*state_.area_light);
     }
     void shape() {
         ShapeDescription shape;
-        shape.type = read_string("a shape's type in quotes");
-        shape.params = read_params(shape.type);
+        const PbrtToken type = read_token("a shape's type in quotes");
+        shape.type = type.text;
+        shape.params = read_params(type);
         shape.to_world = glm::mat4(state_.ctm);
         shape.reverse_orientation = state_.reverse_orientation;
         shape.material = state_.material;
@@ -329,7 +352,7 @@ class Parser {
         if (object_ && shape.area_light)
             throw lexer_->error(directive_, "objects without area lights, as in pbrt",
                                 "a Shape that shines");
-        (object_ ? *object_ : scene_.shapes).push_back(std::move(shape));
+        (object_ ? object_->shapes : scene_.shapes).push_back(std::move(shape));
     }
 
     SceneDescription scene_;
@@ -339,8 +362,8 @@ class Parser {
     std::vector<Saved> saved_;
     std::map<std::string, glm::dmat4> coordinate_systems_;
     std::map<std::string, std::shared_ptr<const TextureDescription>> textures_;
-    std::map<std::string, std::vector<ShapeDescription>> objects_;
-    std::vector<ShapeDescription>* object_ = nullptr; ///< that is being described
+    std::map<std::string, Object> objects_;
+    Object* object_ = nullptr; ///< that is being described
     int include_depth_ = 0;
     bool in_world_ = false;
 };

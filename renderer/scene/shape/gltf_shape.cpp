@@ -27,18 +27,26 @@ constexpr float kShortestEdge = 0.5f;
 constexpr double kNotableStretch = 1.1, kNotableShear = radians(10.0);
 
 /// What was mended, in one line.
-std::string summary(const CleaningReport& dropped, const SubdivisionReport& counts) {
+std::string summary(const CleaningReport& dropped, const SubdivisionReport& counts,
+                    size_t max_triangles) {
     std::string line;
     for (const auto& [count, what] :
          {std::pair{dropped.degenerate, "triangles with two corners at one point dropped"},
           {dropped.repeated, "triangles that lie on another dropped"},
+          {dropped.vertices, "repeated vertices merged"},
+          {dropped.collinear, "triangles without area, three corners on a line, left in place"},
           {counts.non_manifold_edges, "non-manifold edges cut"},
+          {counts.bow_ties, "vertices where pieces meet in a point (bow-ties) cut"},
           {counts.t_junctions, "vertices on other edges (T-junctions) held there"},
           {counts.unrefinable, "faces that cannot be subdivided left flat"},
           {counts.mirrored, "faces with mirrored UVs, with which the cloth is not mirrored"},
           {counts.frames_repaired, "vertices given the warp direction of their neighbours"}})
         if (count > 0)
             line += fmt::format("{}{} {}", line.empty() ? "" : "; ", count, what);
+    if (counts.coarser > 1)
+        line += fmt::format("{}edges cut {} times less finely than asked, lest there be more than "
+                            "{} triangles",
+                            line.empty() ? "" : "; ", counts.coarser, max_triangles);
     return line;
 }
 
@@ -84,6 +92,11 @@ SubdivisionOptions subdivision(const ShapeContext& context) {
 
 /// Metres of cloth to a unit of UV, if the scene says so.
 std::optional<double> stated_uv_scale(const Params& params) {
+    if (params.is_string("uvscale")) {
+        if (const std::string word = params.get_string("uvscale", ""); word != "auto")
+            params.fail("uvscale", "a length [m] or \"auto\"", fmt::format("\"{}\"", word));
+        return std::nullopt;
+    }
     const double scale = params.get_float("uvscale", 1);
     if (!params.has("uvscale"))
         return std::nullopt;
@@ -121,11 +134,11 @@ TriangleMesh refine(const CleanMesh& part, const ShapeContext& context,
     if (flat && options.need_uvs && part.uv_index.empty())
         throw FileError(name, "", "UVs, along which the cloth lies", "none");
     SubdivisionReport counts;
-    TriangleMesh mesh = flat ? flat_mesh(part) : subdivide(part, options, name, &counts);
+    TriangleMesh mesh = flat ? flat_mesh(part, &counts) : subdivide(part, options, name, &counts);
     if (options.need_uvs && by_tangents && part.warps.empty())
         throw FileError(name, "", "TANGENT and NORMAL attributes, along which the cloth lies",
                         "none");
-    std::vector<std::string> told{summary(part.dropped, counts)};
+    std::vector<std::string> told{summary(part.dropped, counts, options.max_triangles)};
     if (options.need_uvs && !by_tangents)
         told.push_back(strain_told(stated_uv_scale(context.params), part, mesh));
     for (const std::string& line : told)
@@ -137,7 +150,8 @@ TriangleMesh refine(const CleanMesh& part, const ShapeContext& context,
 /// A glTF or GLB model, metres, in glTF's axes (+y up); one part per primitive, subdivided.
 ///     "string filename"   required
 ///     "float edgelength"  edges are cut into pieces that are seen under this many pixels at most,
-///                         if they stand square to the view; default 4
+///                         if they stand square to the view; default 4. Out of the picture pieces
+///                         are eight times as long
 ///     "integer level"     instead, each edge is cut into so many; 0 = the triangles as they are
 ///     "float creaseangle" edges where the file's normals differ by more stay sharp [degrees];
 ///                         default 30
@@ -149,9 +163,9 @@ TriangleMesh refine(const CleanMesh& part, const ShapeContext& context,
 ///                         the UVs: weft along the tangent, warp along the bitangent; default false
 ///     "float uvscale"     metres of cloth to a unit of UV: how the cloth is strained on the model
 ///                         is told by it. A measured cloth looks the same at any scale, so it
-///                         changes no picture. Default: what the cloth is least strained by, as
-///                         `rapport info` tells it; strain is then told where it is more than a
-///                         tenth, or 10° of shear
+///                         changes no picture. Default, or `"string uvscale" "auto"`: what the
+///                         cloth is least strained by, as `rapport info` tells it; strain is then
+///                         told where it is more than a tenth, or 10° of shear
 std::vector<ShapePart> make_gltf(const ShapeContext& context) {
     const Params& params = context.params;
     const std::string filename = params.get_string("filename", "");
