@@ -84,8 +84,8 @@ bool draw_weave(Draft& draft) {
         ImGui::EndCombo();
     }
     int ends = draft.ends, picks = draft.picks;
-    ImGui::InputInt("ends", &ends);
-    ImGui::InputInt("picks", &picks);
+    ImGui::InputInt("ends##repeat", &ends); // the sett's sliders bear the same names
+    ImGui::InputInt("picks##repeat", &picks);
     ImGui::PopItemWidth();
     ImGui::EndGroup();
     ends = std::clamp(ends, 1, kWidestGrid);

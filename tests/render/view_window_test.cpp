@@ -2,6 +2,7 @@
 #include "renderer/preview/window.h"
 #include "tests/support/sessions.h"
 #include "tests/support/virtual_display.h"
+#include "tests/support/window_hand.h"
 
 #include <epoxy/gl.h> // before GLFW
 // clang-format off
@@ -20,6 +21,7 @@ namespace {
 
 using tests::next_picture;
 using tests::SquareScene;
+using tests::WindowHand;
 
 /// Lets the libraries of the graphics driver stay until the program ends. What they have allocated
 /// is reached from their own variables, and when GLFW had unloaded them it would count as leaked.
@@ -146,6 +148,28 @@ TEST_F(ViewWindow, TheMouseTurnsAndTheWheelBringsNearer) {
     EXPECT_NEAR(glm::distance(poses[4][3], poses[10][3]), 0, 2); // turned, about what it looks at
     EXPECT_NE(poses[12][3], poses[17][3]);
     EXPECT_EQ(poses[12][2], poses[17][2]); // nearer, in the same direction
+}
+
+TEST_F(ViewWindow, ADraggedSliderIsMeasuredWhenItIsLetGo) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    uint64_t request = document().request;
+    WindowHand hand;
+    for (const char* sett : {"ends", "picks"}) {
+        hand.point({"cloth", {sett}}, {0.1f, 0.5f});
+        hand.press();
+        hand.move({10, 0});
+        hand.move({5, 0});
+        hand.then([&] { EXPECT_EQ(document().request, request); }); // not before it is let go
+        hand.release();
+        hand.wait_until([&] { return document().request > request && !document().waiting; });
+        hand.then([&] { request = document().request; });
+    }
+    hand.use(session);
+    EXPECT_EQ(document().error, "");
+    EXPECT_GT(document().table->cloth->ends_per_cm, 25);
+    EXPECT_GT(document().table->cloth->picks_per_cm, 25);
 }
 
 TEST_F(ViewWindow, TextFollowsTheScale) {
