@@ -97,15 +97,15 @@ void ClothPanel::draw_light(const ClothTable& table) {
     ImGui::TextDisabled("light from the ring, drag it");
 }
 
-void ClothPanel::draw_save(Session& session, const std::filesystem::path& file) {
+void ClothPanel::draw_save(Session& session, std::filesystem::path& file) {
     ImGui::InputText("##target", target_, sizeof target_);
     ImGui::SameLine();
     if (!ImGui::Button("save"))
         return;
-    session.save_cloth(file, file.parent_path() / target_);
+    file = file_ = session.save_cloth(file, file.parent_path() / target_);
 }
 
-void ClothPanel::draw(Session& session, const std::filesystem::path& file, float pixel_ratio) {
+void ClothPanel::draw(Session& session, std::filesystem::path& file, float pixel_ratio) {
     const auto found = session.documents().find(file);
     if (found == session.documents().end()) {
         ImGui::TextWrapped("No cloth is worn: choose one at the left.");
@@ -135,16 +135,18 @@ void ClothPanel::draw(Session& session, const std::filesystem::path& file, float
         ImGui::TextWrapped("%s", document.error.c_str());
         ImGui::PopStyleColor();
     }
+    // The document ends when it is saved as another file.
+    const std::shared_ptr<const ClothTable> table = document.table;
     if (document.cloth &&
         ImGui::CollapsingHeader("Weave and yarns", ImGuiTreeNodeFlags_DefaultOpen)) {
         if (draw_cloth_controls(cloth_))
             session.edit_cloth(file, cloth_);
         draw_save(session, file);
     }
-    if (document.table && ImGui::CollapsingHeader("Fibres", ImGuiTreeNodeFlags_DefaultOpen))
-        draw_fibres(*document.table, pixel_ratio);
-    if (document.table && ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen))
-        draw_light(*document.table);
+    if (table && ImGui::CollapsingHeader("Fibres", ImGuiTreeNodeFlags_DefaultOpen))
+        draw_fibres(*table, pixel_ratio);
+    if (table && ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen))
+        draw_light(*table);
     ImGui::PopItemWidth();
 }
 

@@ -73,13 +73,24 @@ uint64_t ClothWorker::request(const std::filesystem::path& file,
         const std::scoped_lock lock(mutex_);
         number = task->request = ++requests_;
         tasks_[file] = std::move(task);
-        if (current_ && !stop_current_) {
-            stop_current_ = true;
-            stopped_at_ = Clock::now();
-        }
+        stop_current();
     }
     changed_.notify_all();
     return number;
+}
+
+void ClothWorker::forget(const std::filesystem::path& file) {
+    const std::scoped_lock lock(mutex_);
+    tasks_.erase(file);
+    if (current_ && current_->file == file)
+        stop_current();
+}
+
+void ClothWorker::stop_current() {
+    if (!current_ || stop_current_)
+        return;
+    stop_current_ = true;
+    stopped_at_ = Clock::now();
 }
 
 std::vector<ClothWorker::News> ClothWorker::take_news() {

@@ -39,6 +39,8 @@ class ClothWorker {
     /// Asks for the table of a file as it is on the disk, or, with a cloth, of that cloth in its
     /// place. Returns the number of the request, counted up from 1.
     uint64_t request(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth = {});
+    /// Ends work on a file.
+    void forget(const std::filesystem::path& file);
 
     struct News {
         std::filesystem::path file;
@@ -65,6 +67,7 @@ class ClothWorker {
     };
 
     void run();
+    void stop_current(); ///< with the mutex held
     /// One step of a task; what it has to tell, and whether there is more to do.
     bool advance(Task& task, const StopSignal& stopped);
     void tell(News news);

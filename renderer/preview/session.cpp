@@ -62,10 +62,9 @@ void Session::take(LoadedScene loaded) {
             document.table = table;
             document.cloth = table->cloth;
             watch_.add(file);
-            if (document.cloth)
-                ask(file, document.cloth);
-            document.waiting = false; // it has a table, in haste
         }
+    for (const auto& [name, choice] : choices_)
+        open(choice.file);
     fill_shelf();
     for (const std::string& warning : loaded.warnings)
         notes_.push_back("warning: " + warning);
@@ -122,10 +121,19 @@ void Session::frame_all() {
 }
 
 void Session::open(const std::filesystem::path& file) {
-    if (documents_.contains(file))
-        return;
-    ask(file, nullptr);
-    watch_.add(file);
+    ClothDocument& document = documents_[file];
+    if (!document.table && !document.waiting) {
+        ask(file, nullptr);
+        watch_.add(file);
+    } else if (document.cloth && document.request == 0) {
+        ask(file, document.cloth);
+        document.waiting = false; // it has a table, in haste
+    }
+}
+
+bool Session::worn(const std::filesystem::path& file) const {
+    return std::ranges::any_of(choices_,
+                               [&](const auto& choice) { return choice.second.file == file; });
 }
 
 void Session::ask(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth) {
@@ -167,7 +175,9 @@ void Session::attempt(const std::function<void()>& action) {
     }
 }
 
-void Session::save_cloth(const std::filesystem::path& file, const std::filesystem::path& target) {
+std::filesystem::path Session::save_cloth(const std::filesystem::path& file,
+                                          const std::filesystem::path& target) {
+    std::filesystem::path next = file;
     attempt([&] {
         ClothDocument& document = documents_.at(file);
         const std::string text = cloth_text(*document.cloth);
@@ -176,9 +186,11 @@ void Session::save_cloth(const std::filesystem::path& file, const std::filesyste
         watch_.add(saved);
         notes_.push_back("saved " + saved.string());
         document.edited = false;
+        next = saved;
         if (saved != file)
             go_on_with(saved, file);
     });
+    return next;
 }
 
 void Session::rescue(const std::string& why) {
@@ -193,13 +205,15 @@ void Session::rescue(const std::string& why) {
             });
 }
 
-/// What was worn from `file` is worn from `target`, where it has just been written.
+/// What was worn from `file` is worn from `target`, where it has just been written; nobody wears
+/// `file` any more.
 void Session::go_on_with(const std::filesystem::path& target, const std::filesystem::path& file) {
-    documents_[target] = documents_.at(file);
+    documents_[target] = std::move(documents_.at(file));
+    documents_.erase(file);
+    worker_.forget(file);
     const bool waiting = documents_[target].waiting;
     ask(target, documents_[target].cloth);
     documents_[target].waiting = waiting;
-    ask(file, nullptr); // is again what it is on the disk
     for (auto& [name, choice] : choices_)
         if (choice.file == file) {
             choice.file = target;
@@ -249,8 +263,10 @@ std::string Session::error() const { return scene_error_.empty() ? tracer_.error
 void Session::look_at_files() {
     for (const std::filesystem::path& file : watch_.changed()) {
         if (file != source_.path) {
-            documents_[file].edited = false;
-            ask(file, nullptr);
+            if (const auto found = documents_.find(file); found != documents_.end()) {
+                found->second.edited = false;
+                ask(file, nullptr);
+            }
         } else if (!reload_.valid()) {
             ClothTables known;
             for (const auto& [cloth, document] : documents_)
@@ -277,9 +293,10 @@ void Session::finish_reload() {
 
 void Session::take_news() {
     for (ClothWorker::News& news : worker_.take_news()) {
-        ClothDocument& document = documents_[news.file];
-        if (news.request != document.request)
+        const auto found = documents_.find(news.file);
+        if (found == documents_.end() || news.request != found->second.request)
             continue;
+        ClothDocument& document = found->second;
         document.waiting = false;
         document.error = news.error;
         if (!news.table)
@@ -287,8 +304,7 @@ void Session::take_news() {
         document.table = news.table;
         if (!document.edited)
             document.cloth = news.table->cloth;
-        const auto wears = [&](const auto& choice) { return choice.second.file == news.file; };
-        if (std::ranges::any_of(choices_, wears)) {
+        if (worn(news.file)) {
             redress_ = true;
             restart();
         }

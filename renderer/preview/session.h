@@ -41,8 +41,10 @@ class Session {
     void choose_cloth(const std::string& material, const ClothChoice& choice);
     void set_lights(const LightSettings& lights);
     void edit_cloth(const std::filesystem::path& file, Cloth cloth);
-    /// Writes the cloth as edited, and goes on with that file; `notes` tells of it.
-    void save_cloth(const std::filesystem::path& file, const std::filesystem::path& target);
+    /// Writes the cloth as edited, and goes on with that file; `notes` tells of it. Returns the
+    /// file to go on with: `file` if that fails.
+    std::filesystem::path save_cloth(const std::filesystem::path& file,
+                                     const std::filesystem::path& target);
     /// Writes the picture as it is: the EXR with all layers, the PNG as displayed. In the
     /// background; `notes` tells of it.
     void save_picture(const std::filesystem::path& exr, const std::filesystem::path& png);
@@ -83,7 +85,9 @@ class Session {
     void attempt(const std::function<void()>& action);
     void go_on_with(const std::filesystem::path& target, const std::filesystem::path& file);
     void take(LoadedScene loaded);
+    /// Has the cloth measured, unless it is already.
     void open(const std::filesystem::path& file);
+    bool worn(const std::filesystem::path& file) const;
     void ask(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth);
     void take_news();
     void look_at_files();

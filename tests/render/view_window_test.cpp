@@ -172,6 +172,27 @@ TEST_F(ViewWindow, ADraggedSliderIsMeasuredWhenItIsLetGo) {
     EXPECT_GT(document().table->cloth->picks_per_cm, 25);
 }
 
+TEST_F(ViewWindow, ThePanelGoesOnWithTheFileThatItSaved) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const std::filesystem::path saved =
+        std::filesystem::weakly_canonical(files / "cloth-edited.toml");
+    WindowHand hand;
+    hand.point({"cloth", {"ends"}}, {0.1f, 0.5f});
+    hand.click();
+    hand.wait_until([&] { return session.documents().at(files.cloth()).edited; });
+    hand.point({"cloth", {"save"}});
+    hand.click();
+    hand.wait_until([&] { return session.choices().at("Body").file == saved; });
+    hand.point({"cloth", {"picks"}}, {0.1f, 0.5f});
+    hand.click();
+    hand.wait_until([&] { return session.documents().at(saved).edited; });
+    hand.use(session);
+    EXPECT_LT(read_cloth(saved).ends_per_cm, 19);
+    EXPECT_EQ(read_cloth(saved).picks_per_cm, 20);
+    EXPECT_LT(session.documents().at(saved).cloth->picks_per_cm, 19);
+}
+
 TEST_F(ViewWindow, TextFollowsTheScale) {
     Window window("scale", {320, 240});
     const auto text_height = [&] {

@@ -110,8 +110,11 @@ TEST(Session, AClothEditChangesThePictureAndTheErrorFalls) {
     EXPECT_LT(mean(after, "albedo.G"), 0.7 * mean(before, "albedo.G"));
     tick_until(session, [&] { return document().table->accuracy < 0.4 * first; });
 
-    session.save_cloth(files.cloth(), files / "red.toml");
-    EXPECT_EQ(session.choices().at("Body").file.filename(), "red.toml");
+    const std::filesystem::path saved = session.save_cloth(files.cloth(), files / "red.toml");
+    EXPECT_EQ(saved.filename(), "red.toml");
+    EXPECT_EQ(session.choices().at("Body").file, saved);
+    EXPECT_FALSE(session.documents().contains(files.cloth())); // nobody wears it: not measured
+    tick_until(session, [&] { return session.worker().working_on() == saved; });
     EXPECT_EQ(read_cloth(files / "red.toml").warp.fibre.color, red.warp.fibre.color);
     EXPECT_EQ(read_cloth(files.cloth()).warp.fibre.color->at(0), 0.3);
 }
