@@ -100,9 +100,14 @@ void ClothPanel::draw_light(const ClothTable& table) {
 void ClothPanel::draw_save(Session& session, std::filesystem::path& file) {
     ImGui::InputText("##target", target_, sizeof target_);
     ImGui::SameLine();
-    if (!ImGui::Button("save"))
+    const std::filesystem::path target = file.parent_path() / target_;
+    const bool again = target == refused_;
+    if (!ImGui::Button(again ? "overwrite###save" : "save###save"))
         return;
-    file = file_ = session.save_cloth(file, file.parent_path() / target_);
+    const std::filesystem::path next = session.save_cloth(file, target, again);
+    const bool refused = next == file && target != file && std::filesystem::exists(target);
+    refused_ = refused ? target : "";
+    file = file_ = next;
 }
 
 void ClothPanel::draw(Session& session, std::filesystem::path& file, float pixel_ratio) {

@@ -22,6 +22,7 @@ class ClothPanel {
     std::shared_ptr<const Cloth> shown_; ///< of the session, from which `cloth_` started
     Cloth cloth_;                        ///< as the controls have it
     char target_[512] = {};              ///< name of the file to save as
+    std::filesystem::path refused_;      ///< there is such a file: asked again, it is overwritten
 
     glm::vec2 light_{-0.5f, 0}; ///< where it comes from, on the disc (hemisphere.h)
     bool transmitted_ = false;

@@ -1,6 +1,8 @@
 #include "renderer/preview/session.h"
 
 #include "renderer/core/atomic_file.h"
+#include "renderer/core/error.h"
+#include "renderer/core/input_file.h"
 #include "renderer/core/png.h"
 #include "renderer/preview/camera_file.h"
 
@@ -34,6 +36,11 @@ Box subject_of(const Scene& scene) {
 
 bool ready(const auto& future) {
     return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+void write_cloth(const Cloth& cloth, const std::filesystem::path& file) {
+    const std::string text = cloth_text(cloth);
+    write_stream_atomically(file, [&](std::ofstream& stream) { stream << text; });
 }
 
 } // namespace
@@ -176,13 +183,17 @@ void Session::attempt(const std::function<void()>& action) {
 }
 
 std::filesystem::path Session::save_cloth(const std::filesystem::path& file,
-                                          const std::filesystem::path& target) {
+                                          const std::filesystem::path& target, bool overwrite) {
     std::filesystem::path next = file;
     attempt([&] {
-        ClothDocument& document = documents_.at(file);
-        const std::string text = cloth_text(*document.cloth);
-        write_stream_atomically(target, [&](std::ofstream& stream) { stream << text; });
+        if (lower_extension(target) != ".toml")
+            throw FileError(target.string(), "", "a name that ends in .toml", "another ending");
         const std::filesystem::path saved = std::filesystem::weakly_canonical(target);
+        if (saved != file && !overwrite && std::filesystem::exists(saved))
+            throw FileError(target.string(), "", "a new name, or to be told again to overwrite",
+                            "a file");
+        ClothDocument& document = documents_.at(file);
+        write_cloth(*document.cloth, saved);
         watch_.add(saved);
         notes_.push_back("saved " + saved.string());
         document.edited = false;
@@ -197,12 +208,18 @@ void Session::rescue(const std::string& why) {
     notes_.push_back(why);
     for (const auto& [file, document] : documents_)
         if (document.edited)
-            attempt([&] {
-                const std::string name = file.stem().string() + "-rescued.toml";
-                const std::string text = cloth_text(*document.cloth);
-                write_stream_atomically(name, [&](std::ofstream& stream) { stream << text; });
-                notes_.push_back("saved " + name);
-            });
+            rescue(file, *document.cloth);
+}
+
+void Session::rescue(const std::filesystem::path& file, const Cloth& cloth) {
+    attempt([&] {
+        const std::string stem = file.stem().string() + "-rescued";
+        std::string name = stem + ".toml";
+        for (int copy = 2; std::filesystem::exists(name); ++copy)
+            name = fmt::format("{}-{}.toml", stem, copy);
+        write_cloth(cloth, name);
+        notes_.push_back("saved " + name);
+    });
 }
 
 /// What was worn from `file` is worn from `target`, where it has just been written; nobody wears
@@ -264,7 +281,13 @@ void Session::look_at_files() {
     for (const std::filesystem::path& file : watch_.changed()) {
         if (file != source_.path) {
             if (const auto found = documents_.find(file); found != documents_.end()) {
-                found->second.edited = false;
+                ClothDocument& document = found->second;
+                if (document.edited) {
+                    notes_.push_back(file.filename().string() +
+                                     " changed on the disk and takes the place of the edits");
+                    rescue(file, *document.cloth);
+                }
+                document.edited = false;
                 ask(file, nullptr);
             }
         } else if (!reload_.valid()) {

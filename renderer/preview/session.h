@@ -42,9 +42,10 @@ class Session {
     void set_lights(const LightSettings& lights);
     void edit_cloth(const std::filesystem::path& file, Cloth cloth);
     /// Writes the cloth as edited, and goes on with that file; `notes` tells of it. Returns the
-    /// file to go on with: `file` if that fails.
+    /// file to go on with: `file` if that fails, as it does where the target is no .toml, or, but
+    /// for `overwrite`, another file that there is already.
     std::filesystem::path save_cloth(const std::filesystem::path& file,
-                                     const std::filesystem::path& target);
+                                     const std::filesystem::path& target, bool overwrite = false);
     /// Writes the picture as it is: the EXR with all layers, the PNG as displayed. In the
     /// background; `notes` tells of it.
     void save_picture(const std::filesystem::path& exr, const std::filesystem::path& png);
@@ -81,6 +82,8 @@ class Session {
     const ClothWorker& worker() const { return worker_; }
 
   private:
+    /// Writes a cloth as edited into the working folder, under a name of its own.
+    void rescue(const std::filesystem::path& file, const Cloth& cloth);
     /// Runs what writes files; what goes wrong becomes a note.
     void attempt(const std::function<void()>& action);
     void go_on_with(const std::filesystem::path& target, const std::filesystem::path& file);

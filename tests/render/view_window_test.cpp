@@ -177,11 +177,17 @@ TEST_F(ViewWindow, ThePanelGoesOnWithTheFileThatItSaved) {
     Session session({files.scene()});
     const std::filesystem::path saved =
         std::filesystem::weakly_canonical(files / "cloth-edited.toml");
+    tests::write_bytes(saved, "another's");
     WindowHand hand;
     hand.point({"cloth", {"ends"}}, {0.1f, 0.5f});
     hand.click();
     hand.wait_until([&] { return session.documents().at(files.cloth()).edited; });
-    hand.point({"cloth", {"save"}});
+    hand.point({"cloth", {"###save"}});
+    hand.click();
+    hand.then([&] { // there is such a file: to be told again
+        EXPECT_EQ(session.choices().at("Body").file, files.cloth());
+        EXPECT_EQ(tests::read_bytes(saved), "another's");
+    });
     hand.click();
     hand.wait_until([&] { return session.choices().at("Body").file == saved; });
     hand.point({"cloth", {"picks"}}, {0.1f, 0.5f});

@@ -5,6 +5,7 @@
 #define GLFW_INCLUDE_NONE // the test's own OpenGL loader comes in any order
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
+#include <chrono>
 #include <functional>
 #include <gtest/gtest.h>
 #include <imgui_internal.h>
@@ -73,14 +74,15 @@ class WindowHand {
 
     /// Opens a window of that size on the session and does all of it.
     void use(Session& session, const glm::ivec2& size = {1200, 900}) {
-        constexpr int kMostFrames = 1200; // 20 s and more
+        using Clock = std::chrono::steady_clock;
+        const Clock::time_point latest = Clock::now() + std::chrono::seconds(30);
         size_t next = 0;
-        view(session, size, {kMostFrames, {}, [&](int frame) {
+        view(session, size, {0, {}, [&](int frame) {
                                  if (frame == 0)
                                      glfwFocusWindow(glfwGetCurrentContext());
                                  if (frame < 2)
                                      return; // what there is to point at has to be drawn first
-                                 if (next == steps_.size())
+                                 if (next == steps_.size() || Clock::now() > latest)
                                      glfwSetWindowShouldClose(glfwGetCurrentContext(), GLFW_TRUE);
                                  else if (steps_[next]())
                                      ++next;

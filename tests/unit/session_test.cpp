@@ -155,6 +155,47 @@ TEST(Session, KeepsTheOldClothUntilABrokenOneIsMended) {
     EXPECT_EQ(document().table->cloth->warp.fibre.color->at(0), 0.55);
 }
 
+TEST(Session, KeepsEditsOfAClothThatChangesOnTheDisk) {
+    const SquareScene files(SquareScene::Worn::measured);
+    const std::filesystem::path folder = std::filesystem::current_path();
+    std::filesystem::current_path(files.scene().parent_path());
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    const auto edit = [&](double ends_per_cm) {
+        Cloth cloth = *document().cloth;
+        cloth.ends_per_cm = ends_per_cm;
+        session.edit_cloth(files.cloth(), cloth);
+    };
+    edit(17);
+    tests::write_bytes(files.cloth(), tests::coarse_cloth("0.55"));
+    tick_until(session, [&] { return !document().edited && !document().waiting; });
+    EXPECT_EQ(read_cloth("cloth-rescued.toml").ends_per_cm, 17);
+    EXPECT_EQ(session.notes().back(), "saved cloth-rescued.toml");
+    EXPECT_EQ(document().cloth->warp.fibre.color->at(0), 0.55);
+    edit(18);
+    tests::write_bytes(files.cloth(), "broken");
+    tick_until(session, [&] { return !document().error.empty(); });
+    EXPECT_EQ(read_cloth("cloth-rescued-2.toml").ends_per_cm, 18);
+    EXPECT_EQ(read_cloth("cloth-rescued.toml").ends_per_cm, 17);
+    std::filesystem::current_path(folder);
+}
+
+TEST(Session, SavesAClothOnlyOverItsOwnFileUnlessToldAgain) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const std::filesystem::path other = std::filesystem::weakly_canonical(files / "other.toml");
+    tests::write_bytes(other, "another's");
+    EXPECT_EQ(session.save_cloth(files.cloth(), other), files.cloth());
+    EXPECT_NE(session.notes().back().find("other.toml"), std::string::npos);
+    EXPECT_EQ(tests::read_bytes(other), "another's");
+    for (const char* name : {"scene.pbrt", "", "cloth"})
+        EXPECT_EQ(session.save_cloth(files.cloth(), files / name, true), files.cloth()) << name;
+    EXPECT_NE(tests::read_bytes(files.scene()).find("WorldBegin"), std::string::npos);
+    EXPECT_EQ(session.save_cloth(files.cloth(), files.cloth()), files.cloth());
+    EXPECT_EQ(session.save_cloth(files.cloth(), other, true), other);
+    EXPECT_EQ(read_cloth(other).ends_per_cm, 20);
+}
+
 TEST(Session, KeepsTheOldSceneUntilABrokenOneIsMended) {
     const SquareScene files(SquareScene::Worn::stored);
     Session session({files.scene()});
