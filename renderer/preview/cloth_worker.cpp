@@ -43,12 +43,13 @@ ClothTable ready(const RisingMeasurement& measurement, const std::filesystem::pa
 
 } // namespace
 
-ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch) {
+ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch,
+                       const StopSignal& stopped) {
     if (is_stored(file))
-        return ready(read_table(file), nullptr, file.string());
+        return ready(read_table(file), nullptr, file.string(), stopped);
     RisingMeasurement measurement(read(file));
-    measurement.advance({}, watch);
-    return ready(measurement, file);
+    measurement.advance(stopped, watch);
+    return ready(measurement, file, stopped);
 }
 
 ClothWorker::ClothWorker() : thread_([this] { run(); }) {}
@@ -155,7 +156,7 @@ bool ClothWorker::advance(Task& task, const StopSignal& stopped) {
         tell({task.file, task.request, std::make_shared<const ClothTable>(std::move(table)), {}});
     };
     if (!task.cloth && is_stored(task.file)) {
-        tell_of(first_table(task.file));
+        tell_of(first_table(task.file, {}, stopped));
         return false;
     }
     if (!task.measurement)

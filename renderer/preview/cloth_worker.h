@@ -24,7 +24,8 @@ struct ClothTable {
 };
 
 /// Reads a `.bsdf`, or measures a `.toml` or `.wif` in haste.
-ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch = {});
+ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch = {},
+                       const StopSignal& stopped = {});
 
 /// Gets cloths' tables in the background: stored ones are read, others measured at rising accuracy
 /// down to ε = 0.1, the coarsest table first. What is asked for takes the place of what was asked

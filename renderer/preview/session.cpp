@@ -50,7 +50,7 @@ Session::Session(SceneSource source, const LoadingWatch& watch) : source_(std::m
     watch_.add(source_.path);
 }
 
-Session::~Session() = default;
+Session::~Session() { stop_reload_ = true; }
 
 void Session::take(LoadedScene loaded) {
     base_ = worn_ = loaded.scene;
@@ -290,16 +290,23 @@ void Session::look_at_files() {
                 document.edited = false;
                 ask(file, nullptr);
             }
-        } else if (!reload_.valid()) {
-            ClothTables known;
-            for (const auto& [cloth, document] : documents_)
-                if (document.table)
-                    known[cloth] = document.table;
-            reload_ = std::async(std::launch::async, [source = source_, known = std::move(known)] {
-                return load_scene(source, known);
-            });
+        } else {
+            scene_changed_ = stop_reload_ = true; // one that goes on reads what was there before
         }
     }
+    if (scene_changed_ && !reload_.valid())
+        start_reload();
+}
+
+void Session::start_reload() {
+    ClothTables known;
+    for (const auto& [cloth, document] : documents_)
+        if (document.table)
+            known[cloth] = document.table;
+    scene_changed_ = stop_reload_ = false;
+    reload_ = std::async(std::launch::async, [this, source = source_, known = std::move(known)] {
+        return load_scene(source, known, {}, [this] { return stop_reload_.load(); });
+    });
 }
 
 void Session::finish_reload() {
@@ -309,6 +316,7 @@ void Session::finish_reload() {
         take(reload_.get());
         scene_error_.clear();
         notes_.push_back("loaded " + source_.path.string());
+    } catch (const Stopped&) { // it is loaded anew
     } catch (const std::exception& error) {
         scene_error_ = error.what();
     }

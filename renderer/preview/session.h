@@ -74,6 +74,7 @@ class Session {
     /// Cloth files beside those in use, sorted.
     const std::vector<std::filesystem::path>& shelf() const { return shelf_; }
     const SceneSource& source() const { return source_; }
+    bool reloading() const { return reload_.valid(); }
     /// What went wrong with the scene or the picture, or empty; the old scene stays.
     std::string error() const;
     /// What was done, the latest last.
@@ -94,6 +95,7 @@ class Session {
     void ask(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth);
     void take_news();
     void look_at_files();
+    void start_reload();
     void finish_reload();
     void fill_shelf();
     void show();
@@ -114,8 +116,10 @@ class Session {
     FileWatch watch_;
     std::string scene_error_;
     std::vector<std::string> notes_;
-    bool stale_ = true;    ///< the picture is of another view
-    bool redress_ = false; ///< and of other cloths or lights
+    bool stale_ = true;          ///< the picture is of another view
+    bool redress_ = false;       ///< and of other cloths or lights
+    bool scene_changed_ = false; ///< on the disk, since it was last loaded
+    std::atomic<bool> stop_reload_ = false;
     std::future<LoadedScene> reload_;
     std::future<std::string> saving_;
     ClothWorker worker_;

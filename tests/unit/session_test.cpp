@@ -3,6 +3,8 @@
 #include "renderer/preview/session.h"
 #include "tests/support/sessions.h"
 
+#include <cstring>
+
 // The window without the window: the same calls as its input makes.
 
 namespace rapport {
@@ -211,6 +213,39 @@ TEST(Session, KeepsTheOldSceneUntilABrokenOneIsMended) {
     tests::write_bytes(files.scene(), mended + "# mended\n");
     tick_until(session, [&] { return session.error().empty() && !session.notes().empty(); });
     EXPECT_GT(difference(next_picture(session, 4)->image, before), 0.05);
+}
+
+/// Lets the scene name a cloth that takes long to measure.
+std::string slowly_loaded(const SquareScene& files) {
+    std::string cloth = tests::coarse_cloth("0.3");
+    for (const auto& [from, to] :
+         {std::pair("fibres = 3\n", "fibres = 3000\n"), {"diameter_um = 60", "diameter_um = 1.5"}})
+        for (size_t at; (at = cloth.find(from)) != std::string::npos;)
+            cloth.replace(at, std::strlen(from), to);
+    tests::write_bytes(files / "slow.toml", cloth);
+    std::string text = tests::read_bytes(files.scene());
+    text.replace(text.find("table.bsdf"), 10, "slow.toml");
+    return text;
+}
+
+TEST(Session, ASceneThatChangesWhileItReloadsIsLoadedAgain) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    const std::string text = tests::read_bytes(files.scene());
+    tests::write_bytes(files.scene(), slowly_loaded(files));
+    tick_until(session, [&] { return session.reloading(); });
+    tests::write_bytes(files.scene(), text + "Shape \"sphere\"\n");
+    tick_until(session, [&] { return session.scene().surfaces().size() == 3; });
+}
+
+TEST(Session, ClosesWhileItReloads) {
+    const SquareScene files(SquareScene::Worn::stored);
+    auto session = std::make_unique<Session>(SceneSource{files.scene()});
+    tests::write_bytes(files.scene(), slowly_loaded(files));
+    tick_until(*session, [&] { return session->reloading(); });
+    const auto start = std::chrono::steady_clock::now();
+    session.reset();
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
 }
 
 TEST(Session, SavesThePictureThatIsShown) {
