@@ -18,18 +18,22 @@ void wrapped(const ImVec4& colour, const std::string& line) {
     ImGui::PopStyleColor();
 }
 
-/// A choice among files, shown by their names.
+/// A choice among files, shown by their names; none is what the scene has.
 bool pick_file(const char* label, std::filesystem::path& file,
                const std::vector<std::filesystem::path>& files) {
     bool picked = false;
-    const std::string shown = file.empty() ? "as in the scene" : file.filename().string();
-    if (!ImGui::BeginCombo(label, shown.c_str()))
+    constexpr const char* kNone = "as in the scene";
+    if (!ImGui::BeginCombo(label, file.empty() ? kNone : file.filename().c_str()))
         return false;
-    for (const std::filesystem::path& other : files)
-        if (ImGui::Selectable(other.filename().string().c_str(), other == file)) {
+    const auto offer = [&](const std::string& line, const std::filesystem::path& other) {
+        if (ImGui::Selectable(line.c_str(), other == file)) {
             picked = other != file;
             file = other;
         }
+    };
+    offer(kNone, {});
+    for (const std::filesystem::path& other : files) // of which two may have one name
+        offer(other.filename().string() + "##" + other.string(), other);
     ImGui::EndCombo();
     return picked;
 }
@@ -84,7 +88,8 @@ void draw_garment(Session& session, std::filesystem::path& selected) {
         }
         if (changed) {
             session.choose_cloth(name, choice);
-            selected = choice.file;
+            const auto now = session.choices().find(name);
+            selected = now == session.choices().end() ? "" : now->second.file;
         }
         ImGui::Spacing();
         ImGui::PopID();

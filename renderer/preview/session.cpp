@@ -80,13 +80,17 @@ void Session::take(LoadedScene loaded) {
 }
 
 void Session::fill_shelf() {
-    std::set<std::filesystem::path> folders, files;
+    std::error_code error; // what cannot be listed has nothing to choose
+    std::set<std::filesystem::path> folders{
+        std::filesystem::weakly_canonical(source_.path).parent_path(),
+        std::filesystem::current_path(error)};
+    std::set<std::filesystem::path> files;
     for (const auto& [file, document] : documents_)
         folders.insert(file.parent_path());
     for (const std::filesystem::path& folder : folders) {
-        std::error_code error;
         for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-            if (entry.path().extension() == ".toml" || entry.path().extension() == ".bsdf")
+            if (const std::string kind = lower_extension(entry.path());
+                kind == ".toml" || kind == ".wif" || kind == ".bsdf")
                 files.insert(std::filesystem::weakly_canonical(entry.path()));
     }
     shelf_.assign(files.begin(), files.end());
@@ -151,10 +155,17 @@ void Session::ask(const std::filesystem::path& file, std::shared_ptr<const Cloth
 }
 
 void Session::choose_cloth(const std::string& material, const ClothChoice& choice) {
-    ClothChoice canonical = choice;
-    canonical.file = std::filesystem::weakly_canonical(choice.file);
-    choices_[material] = own_choices_[material] = canonical;
-    open(canonical.file);
+    if (choice.file.empty()) {
+        own_choices_.erase(material);
+        choices_.erase(material);
+        choices_.merge(worn_cloths(*base_));
+    } else {
+        ClothChoice canonical = choice;
+        canonical.file = std::filesystem::weakly_canonical(choice.file);
+        choices_[material] = own_choices_[material] = canonical;
+    }
+    if (const auto worn = choices_.find(material); worn != choices_.end())
+        open(worn->second.file);
     redress_ = true;
     restart();
 }

@@ -38,6 +38,7 @@ class Session {
     void frame_all();
 
     // What a person does in the panel.
+    /// Of no file: what it is in the scene.
     void choose_cloth(const std::string& material, const ClothChoice& choice);
     void set_lights(const LightSettings& lights);
     void edit_cloth(const std::filesystem::path& file, Cloth cloth);
@@ -71,7 +72,7 @@ class Session {
     const LightSettings& lights() const { return lights_; }
     const LightKinds& light_kinds() const { return light_kinds_; }
     const std::map<std::filesystem::path, ClothDocument>& documents() const { return documents_; }
-    /// Cloth files beside those in use, sorted.
+    /// Cloth files beside those in use and the scene and in the working folder, sorted.
     const std::vector<std::filesystem::path>& shelf() const { return shelf_; }
     const SceneSource& source() const { return source_; }
     bool reloading() const { return reload_.valid(); }

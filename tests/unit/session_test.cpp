@@ -121,6 +121,29 @@ TEST(Session, AClothEditChangesThePictureAndTheErrorFalls) {
     EXPECT_EQ(read_cloth(files.cloth()).warp.fibre.color->at(0), 0.3);
 }
 
+TEST(Session, ABareModelFindsClothsToWearAndCanTakeThemOff) {
+    const SquareScene files(SquareScene::Worn::measured);
+    tests::write_bytes(files / "draft.wif", "");
+    Session session({files / "square.glb"});
+    session.resize({64, 48});
+    EXPECT_TRUE(session.choices().empty());
+    for (const auto& file : {files.cloth(), std::filesystem::weakly_canonical(files / "draft.wif")})
+        EXPECT_EQ(std::ranges::count(session.shelf(), file), 1) << file;
+    const Image bare = next_picture(session, 16)->image;
+    session.choose_cloth("Body", {files.cloth(), "", 0});
+    tick_until(session, [&] { return session.documents().at(files.cloth()).table != nullptr; });
+    EXPECT_FALSE(compare(next_picture(session, 16)->image, bare).agree);
+    session.choose_cloth("Body", {});
+    EXPECT_TRUE(session.choices().empty());
+    EXPECT_TRUE(compare(next_picture(session, 16)->image, bare).agree);
+
+    // In a scene of its own cloth, that is back.
+    Session dressed({files.scene()});
+    dressed.choose_cloth("Body", {files / "draft.wif", "", 0});
+    dressed.choose_cloth("Body", {});
+    EXPECT_EQ(dressed.choices().at("Body").file, files.cloth());
+}
+
 TEST(Session, TakesFiftyClothEditsOneAfterTheOther) {
     const SquareScene files(SquareScene::Worn::measured);
     Session session({files.scene()});
