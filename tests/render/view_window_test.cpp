@@ -172,6 +172,33 @@ TEST_F(ViewWindow, ADraggedSliderIsMeasuredWhenItIsLetGo) {
     EXPECT_GT(document().table->cloth->picks_per_cm, 25);
 }
 
+TEST_F(ViewWindow, AColourCanBeChosenWhereThereIsNone) {
+    const SquareScene files(SquareScene::Worn::measured);
+    std::string text = tests::coarse_cloth("0.3");
+    text.erase(text.find("color = [0.3, 0.3, 0.3]\n[weft]"), 24);
+    text.replace(text.rfind("color = [0.3, 0.3, 0.3]"), 23, "absorption_per_um = 0.001");
+    tests::write_bytes(files.cloth(), text);
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    WindowHand hand;
+    for (const char* yarn : {"Warp", "Weft"}) {
+        hand.point({"cloth", {yarn, yarn, "colour", "##X"}});
+        hand.press();
+        for (int way = 0; way < 4; ++way)
+            hand.move({-30, 0});
+        hand.release();
+        hand.wait_until([&] { return document().edited; });
+    }
+    hand.use(session);
+    EXPECT_EQ(document().error, "");
+    for (const YarnSpec* yarn : {&document().cloth->warp, &document().cloth->weft}) {
+        ASSERT_TRUE(yarn->fibre.color);
+        EXPECT_LT(yarn->fibre.color->at(0), 0.9);
+        EXPECT_EQ(yarn->fibre.color->at(1), 0.999);
+        EXPECT_FALSE(yarn->fibre.absorption_per_um);
+    }
+}
+
 TEST_F(ViewWindow, ThePanelGoesOnWithTheFileThatItSaved) {
     const SquareScene files(SquareScene::Worn::measured);
     Session session({files.scene()});
