@@ -66,8 +66,8 @@ void ClothPanel::draw_light(const ClothTable& table) {
         if (!map_)
             map_ = std::make_unique<Texture>();
         map_->set(hemisphere_map(*bsdf, from, transmitted_, kMapSize), kMapSize, kMapSize);
-        weft_curve_ = intensity_profile(*bsdf, from, false, kCurvePoints);
-        warp_curve_ = intensity_profile(*bsdf, from, true, kCurvePoints);
+        weft_curve_ = intensity_profile(*bsdf, from, transmitted_, false, kCurvePoints);
+        warp_curve_ = intensity_profile(*bsdf, from, transmitted_, true, kCurvePoints);
         mapped_ = bsdf;
         mapped_light_ = light_;
         mapped_transmitted_ = transmitted_;
