@@ -21,6 +21,7 @@ namespace {
 
 using tests::next_picture;
 using tests::SquareScene;
+using tests::tick_until;
 using tests::WindowHand;
 
 /// Lets the libraries of the graphics driver stay until the program ends. What they have allocated
@@ -163,10 +164,11 @@ TEST_F(ViewWindow, ADraggedSliderIsMeasuredWhenItIsLetGo) {
         hand.move({5, 0});
         hand.then([&] { EXPECT_EQ(document().request, request); }); // not before it is let go
         hand.release();
-        hand.wait_until([&] { return document().request > request && !document().waiting; });
+        hand.wait_until([&] { return document().request > request; });
         hand.then([&] { request = document().request; });
     }
     hand.use(session);
+    tick_until(session, [&] { return !document().waiting; });
     EXPECT_EQ(document().error, "");
     EXPECT_GT(document().table->cloth->ends_per_cm, 25);
     EXPECT_GT(document().table->cloth->picks_per_cm, 25);
@@ -197,6 +199,43 @@ TEST_F(ViewWindow, AColourCanBeChosenWhereThereIsNone) {
         EXPECT_EQ(yarn->fibre.color->at(1), 0.999);
         EXPECT_FALSE(yarn->fibre.absorption_per_um);
     }
+}
+
+TEST_F(ViewWindow, KeysAndClicksDoWhatTheyAreFor) {
+    const SquareScene files(SquareScene::Worn::measured);
+    std::filesystem::current_path(files.scene().parent_path());
+    Session session({files.scene()});
+    const auto cloth = [&] { return session.documents().at(files.cloth()).cloth; };
+    const std::shared_ptr<const Cloth> before = cloth();
+    std::vector<glm::mat4> poses;
+    const auto note_pose = [&] { poses.push_back(session.camera().to_world); };
+    WindowHand hand;
+    hand.point({"picture", {"picture"}}, {0.55f, 0.45f});
+    hand.then([] { ImGui::GetIO().MouseDoubleClickTime = 10; }); // frames may be slow
+    hand.click();
+    hand.then(note_pose); // one click alone is nothing
+    hand.click();
+    hand.then(note_pose);
+    hand.key('F');
+    hand.then(note_pose);
+    hand.wait_until([&] { return session.picture() != nullptr; });
+    hand.key('S');
+    hand.wait_until([&] { return !session.notes().empty(); });
+    hand.point({"cloth", {"drawdown"}}, {0.25f, 0.25f}); // end 1, pick 2
+    hand.click();
+    hand.wait_until([&] { return cloth() != before; });
+    hand.use(session);
+    ASSERT_EQ(poses.size(), 3u);
+    EXPECT_EQ(poses[0], load_scene({files.scene()}).scene->camera.to_world);
+    EXPECT_NE(poses[1][3], poses[0][3]);
+    EXPECT_EQ(poses[1][2], poses[0][2]); // moved sideways
+    EXPECT_NE(poses[2][3], poses[1][3]);
+    EXPECT_TRUE(std::filesystem::exists("scene-view.png"));
+    EXPECT_TRUE(std::filesystem::exists("scene-view.exr"));
+    for (int pick = 0; pick < 2; ++pick)
+        for (int end = 0; end < 2; ++end)
+            EXPECT_EQ(cloth()->draft.up(end, pick) != before->draft.up(end, pick),
+                      end == 0 && pick == 1);
 }
 
 TEST_F(ViewWindow, ThePanelGoesOnWithTheFileThatItSaved) {

@@ -75,7 +75,7 @@ class WindowHand {
     /// Opens a window of that size on the session and does all of it.
     void use(Session& session, const glm::ivec2& size = {1200, 900}) {
         using Clock = std::chrono::steady_clock;
-        const Clock::time_point latest = Clock::now() + std::chrono::seconds(30);
+        const Clock::time_point latest = Clock::now() + std::chrono::minutes(1);
         size_t next = 0;
         view(session, size, {0, {}, [&](int frame) {
                                  if (frame == 0)
