@@ -20,8 +20,9 @@ const ImU32 kWarpColour = IM_COL32(214, 196, 160, 255), kWeftColour = IM_COL32(5
 /// Whether the control just drawn was let go with another value.
 bool let_go() { return ImGui::IsItemDeactivatedAfterEdit(); }
 
-bool slider(const char* label, double& value, double low, double high, const char* format) {
-    ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, format);
+bool slider(const char* label, double& value, double low, double high, const char* format,
+            ImGuiSliderFlags flags = 0) {
+    ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, format, flags);
     return let_go();
 }
 
@@ -129,13 +130,9 @@ bool draw_colour(Dye& dye, const Bands& bands) {
 bool draw_yarn(YarnSpec& yarn, const Bands& bands) {
     bool changed = false;
     if (yarn.section == YarnSection::parallel) {
-        double axes[] = {yarn.width_um, yarn.height_um};
-        constexpr double kLow = 20, kHigh = 1000;
-        ImGui::SliderScalarN("width, height", ImGuiDataType_Double, axes, 2, &kLow, &kHigh,
-                             "%.0f µm", ImGuiSliderFlags_Logarithmic);
-        changed |= let_go();
-        yarn.width_um = axes[0];
-        yarn.height_um = axes[1];
+        constexpr ImGuiSliderFlags kLogarithmic = ImGuiSliderFlags_Logarithmic;
+        changed |= slider("width", yarn.width_um, 20, 1000, "%.0f µm", kLogarithmic);
+        changed |= slider("height", yarn.height_um, 20, 1000, "%.0f µm", kLogarithmic);
     } else {
         changed |= slider("diameter", yarn.width_um, 20, 1000, "%.0f µm");
         yarn.height_um = yarn.width_um;

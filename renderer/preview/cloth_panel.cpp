@@ -129,17 +129,14 @@ void ClothPanel::draw(Session& session, std::filesystem::path& file, float pixel
     ImGui::PushItemWidth(0.62f * ImGui::GetContentRegionAvail().x);
     ImGui::TextWrapped("%s%s", file.filename().string().c_str(),
                        document.edited ? " (edited)" : "");
-    if (document.waiting)
+    if (!document.error.empty()) // one line, lest it push the controls from under the mouse
+        ImGui::TextColored(kRed, "not measured: why, at the left");
+    else if (document.waiting)
         ImGui::TextUnformatted("being measured …");
     else if (document.table)
         ImGui::TextUnformatted(fmt::format("ε {:.3f} after {:.1f} s", document.table->accuracy,
                                            document.table->seconds)
                                    .c_str());
-    if (!document.error.empty()) {
-        ImGui::PushStyleColor(ImGuiCol_Text, kRed);
-        ImGui::TextWrapped("%s", document.error.c_str());
-        ImGui::PopStyleColor();
-    }
     // The document ends when it is saved as another file.
     const std::shared_ptr<const ClothTable> table = document.table;
     if (document.cloth &&

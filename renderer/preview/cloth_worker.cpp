@@ -45,11 +45,17 @@ ClothTable ready(const RisingMeasurement& measurement, const std::filesystem::pa
 
 ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch,
                        const StopSignal& stopped) {
+    const auto asked = std::chrono::steady_clock::now();
+    const auto timed = [&](ClothTable table) {
+        table.seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
+        return table;
+    };
     if (is_stored(file))
-        return ready(read_table(file), nullptr, file.string(), stopped);
+        return timed(ready(read_table(file), nullptr, file.string(), stopped));
     RisingMeasurement measurement(read(file));
     measurement.advance(stopped, watch);
-    return ready(measurement, file, stopped);
+    return timed(ready(measurement, file, stopped));
 }
 
 ClothWorker::ClothWorker() : thread_([this] { run(); }) {}

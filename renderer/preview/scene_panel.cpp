@@ -80,8 +80,6 @@ void draw_garment(Session& session, std::filesystem::path& selected) {
             changed |= ImGui::SliderFloat("rotation", &choice.rotation, -90, 90, "%.0f°");
             if (document)
                 wrapped(kGrey, table_line(*document));
-            if (document && !document->error.empty())
-                wrapped(kRed, document->error);
             if (document && document->cloth && choice.file != selected &&
                 ImGui::SmallButton("edit this cloth"))
                 selected = choice.file;
@@ -135,8 +133,15 @@ void draw_progress(const Session& session) {
     }
     if (const std::filesystem::path file = session.worker().working_on(); !file.empty())
         text("measuring " + file.filename().string());
+}
+
+/// Last in the panel, for they come and go.
+void draw_messages(const Session& session, const std::filesystem::path& selected) {
     if (const std::string error = session.error(); !error.empty())
         wrapped(kRed, error);
+    for (const auto& [file, document] : session.documents())
+        if (!document.error.empty() && (file == selected || session.worn(file)))
+            wrapped(kRed, document.error);
     for (size_t i = session.notes().size(); i > 0 && i + 3 > session.notes().size(); --i)
         wrapped(kGrey, session.notes()[i - 1]);
 }
@@ -173,6 +178,7 @@ void draw_scene_panel(Session& session, std::filesystem::path& selected) {
         draw_files(session);
     }
     wrapped(kGrey, "drag: turn   right drag: move   wheel: nearer\ndouble click: look at   F: all");
+    draw_messages(session, selected);
     ImGui::PopItemWidth();
 }
 

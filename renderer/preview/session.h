@@ -68,6 +68,7 @@ class Session {
     const Camera& camera() const { return camera_->camera(); }
     const Scene& scene() const { return *base_; }
     const ClothChoices& choices() const { return choices_; }
+    bool worn(const std::filesystem::path& file) const;
     const std::set<std::string>& wearers() const { return wearers_; }
     const LightSettings& lights() const { return lights_; }
     const LightKinds& light_kinds() const { return light_kinds_; }
@@ -92,7 +93,6 @@ class Session {
     void take(LoadedScene loaded);
     /// Has the cloth measured, unless it is already.
     void open(const std::filesystem::path& file);
-    bool worn(const std::filesystem::path& file) const;
     void ask(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth);
     void take_news();
     void look_at_files();

@@ -238,6 +238,32 @@ TEST_F(ViewWindow, KeysAndClicksDoWhatTheyAreFor) {
                       end == 0 && pick == 1);
 }
 
+TEST_F(ViewWindow, AnErrorMovesNoControls) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    EXPECT_GT(document().table->seconds, 0);
+    std::vector<glm::vec2> places;
+    WindowHand hand;
+    const auto note_places = [&] {
+        for (const WindowHand::Place& place :
+             {WindowHand::Place{"cloth", {"picks"}}, {"scene", {"save picture (S)"}}}) {
+            hand.point(place);
+            hand.then([&] { places.push_back(hand.mouse()); });
+        }
+    };
+    hand.wait_until([&] { return session.picture() && session.picture()->samples > 1; });
+    note_places();
+    hand.point({"cloth", {"ends"}}, {0.9f, 0.5f});
+    hand.click();
+    hand.wait_until([&] { return !document().error.empty(); });
+    note_places();
+    hand.use(session);
+    ASSERT_EQ(places.size(), 4u);
+    EXPECT_EQ(places[0], places[2]);
+    EXPECT_EQ(places[1], places[3]);
+}
+
 TEST_F(ViewWindow, ThePanelGoesOnWithTheFileThatItSaved) {
     const SquareScene files(SquareScene::Worn::measured);
     Session session({files.scene()});

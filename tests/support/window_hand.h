@@ -72,6 +72,8 @@ class WindowHand {
         });
     }
 
+    const glm::vec2& mouse() const { return mouse_; }
+
     /// Opens a window of that size on the session and does all of it.
     void use(Session& session, const glm::ivec2& size = {1200, 900}) {
         using Clock = std::chrono::steady_clock;
