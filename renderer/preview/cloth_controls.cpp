@@ -20,8 +20,9 @@ const ImU32 kWarpColour = IM_COL32(214, 196, 160, 255), kWeftColour = IM_COL32(5
 /// Whether the control just drawn was let go with another value.
 bool let_go() { return ImGui::IsItemDeactivatedAfterEdit(); }
 
-bool slider(const char* label, double& value, double low, double high, const char* format) {
-    ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, format);
+bool slider(const char* label, double& value, double low, double high, const char* format,
+            ImGuiSliderFlags flags = 0) {
+    ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, format, flags);
     return let_go();
 }
 
@@ -84,8 +85,8 @@ bool draw_weave(Draft& draft) {
         ImGui::EndCombo();
     }
     int ends = draft.ends, picks = draft.picks;
-    ImGui::InputInt("ends", &ends);
-    ImGui::InputInt("picks", &picks);
+    ImGui::InputInt("ends##repeat", &ends); // the sett's sliders bear the same names
+    ImGui::InputInt("picks##repeat", &picks);
     ImGui::PopItemWidth();
     ImGui::EndGroup();
     ends = std::clamp(ends, 1, kWidestGrid);
@@ -102,31 +103,36 @@ float decode_srgb(float encoded) {
     return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
-/// The dye as the colour it gives; one that is told by absorption stays as it is.
-bool draw_colour(FibreSpec& fibre) {
-    if (!fibre.color || fibre.color->size() != 3)
+/// The dye as the colour it gives; white where none is told. The first that is chosen takes the
+/// place of an absorption.
+bool draw_colour(Dye& dye, const Bands& bands) {
+    if (!bands.is_rgb()) {
+        ImGui::TextDisabled("dyed by wavelength, in the file");
         return false;
+    }
     constexpr double kBrightest = 0.999;
     float shown[3];
     for (int c = 0; c < 3; ++c)
-        shown[c] = encode_srgb(static_cast<float>((*fibre.color)[c]));
-    if (ImGui::ColorEdit3("colour", shown))
+        shown[c] = dye.color ? encode_srgb(static_cast<float>((*dye.color)[c])) : 1;
+    if (ImGui::ColorEdit3("colour", shown)) {
+        dye.absorption_per_um.reset();
+        dye.color.emplace(3);
         for (int c = 0; c < 3; ++c)
-            (*fibre.color)[c] =
+            (*dye.color)[c] =
                 std::clamp(static_cast<double>(decode_srgb(shown[c])), 0.0, kBrightest);
-    return let_go();
+    }
+    const bool chosen = let_go();
+    if (dye.absorption_per_um)
+        ImGui::TextDisabled("dyed by absorption, until a colour is chosen");
+    return chosen;
 }
 
-bool draw_yarn(YarnSpec& yarn) {
+bool draw_yarn(YarnSpec& yarn, const Bands& bands) {
     bool changed = false;
     if (yarn.section == YarnSection::parallel) {
-        double axes[] = {yarn.width_um, yarn.height_um};
-        constexpr double kLow = 20, kHigh = 1000;
-        ImGui::SliderScalarN("width, height", ImGuiDataType_Double, axes, 2, &kLow, &kHigh,
-                             "%.0f µm", ImGuiSliderFlags_Logarithmic);
-        changed |= let_go();
-        yarn.width_um = axes[0];
-        yarn.height_um = axes[1];
+        constexpr ImGuiSliderFlags kLogarithmic = ImGuiSliderFlags_Logarithmic;
+        changed |= slider("width", yarn.width_um, 20, 1000, "%.0f µm", kLogarithmic);
+        changed |= slider("height", yarn.height_um, 20, 1000, "%.0f µm", kLogarithmic);
     } else {
         changed |= slider("diameter", yarn.width_um, 20, 1000, "%.0f µm");
         yarn.height_um = yarn.width_um;
@@ -136,7 +142,7 @@ bool draw_yarn(YarnSpec& yarn) {
     changed |= let_go();
     changed |= slider("fibre", yarn.fibre.diameter_um, 1, 100, "%.1f µm");
     changed |= slider("roughness", yarn.fibre.roughness, 0, 0.5, "%.3f");
-    return changed | draw_colour(yarn.fibre);
+    return changed | draw_colour(yarn.fibre, bands);
 }
 
 } // namespace
@@ -148,7 +154,7 @@ bool draw_cloth_controls(Cloth& cloth) {
     const auto system = [&](const char* title, YarnSpec& yarn) {
         ImGui::PushID(title);
         if (ImGui::TreeNodeEx(title, ImGuiTreeNodeFlags_DefaultOpen)) {
-            changed |= draw_yarn(yarn);
+            changed |= draw_yarn(yarn, cloth.bands);
             ImGui::TreePop();
         }
         ImGui::PopID();

@@ -66,8 +66,8 @@ void ClothPanel::draw_light(const ClothTable& table) {
         if (!map_)
             map_ = std::make_unique<Texture>();
         map_->set(hemisphere_map(*bsdf, from, transmitted_, kMapSize), kMapSize, kMapSize);
-        weft_curve_ = intensity_profile(*bsdf, from, false, kCurvePoints);
-        warp_curve_ = intensity_profile(*bsdf, from, true, kCurvePoints);
+        weft_curve_ = intensity_profile(*bsdf, from, transmitted_, false, kCurvePoints);
+        warp_curve_ = intensity_profile(*bsdf, from, transmitted_, true, kCurvePoints);
         mapped_ = bsdf;
         mapped_light_ = light_;
         mapped_transmitted_ = transmitted_;
@@ -97,15 +97,20 @@ void ClothPanel::draw_light(const ClothTable& table) {
     ImGui::TextDisabled("light from the ring, drag it");
 }
 
-void ClothPanel::draw_save(Session& session, const std::filesystem::path& file) {
+void ClothPanel::draw_save(Session& session, std::filesystem::path& file) {
     ImGui::InputText("##target", target_, sizeof target_);
     ImGui::SameLine();
-    if (!ImGui::Button("save"))
+    const std::filesystem::path target = file.parent_path() / target_;
+    const bool again = target == refused_;
+    if (!ImGui::Button(again ? "overwrite###save" : "save###save"))
         return;
-    session.save_cloth(file, file.parent_path() / target_);
+    const std::filesystem::path next = session.save_cloth(file, target, again);
+    const bool refused = next == file && target != file && std::filesystem::exists(target);
+    refused_ = refused ? target : "";
+    file = file_ = next;
 }
 
-void ClothPanel::draw(Session& session, const std::filesystem::path& file, float pixel_ratio) {
+void ClothPanel::draw(Session& session, std::filesystem::path& file, float pixel_ratio) {
     const auto found = session.documents().find(file);
     if (found == session.documents().end()) {
         ImGui::TextWrapped("No cloth is worn: choose one at the left.");
@@ -124,27 +129,26 @@ void ClothPanel::draw(Session& session, const std::filesystem::path& file, float
     ImGui::PushItemWidth(0.62f * ImGui::GetContentRegionAvail().x);
     ImGui::TextWrapped("%s%s", file.filename().string().c_str(),
                        document.edited ? " (edited)" : "");
-    if (document.waiting)
+    if (!document.error.empty()) // one line, lest it push the controls from under the mouse
+        ImGui::TextColored(kRed, "not measured: why, at the left");
+    else if (document.waiting)
         ImGui::TextUnformatted("being measured …");
     else if (document.table)
         ImGui::TextUnformatted(fmt::format("ε {:.3f} after {:.1f} s", document.table->accuracy,
                                            document.table->seconds)
                                    .c_str());
-    if (!document.error.empty()) {
-        ImGui::PushStyleColor(ImGuiCol_Text, kRed);
-        ImGui::TextWrapped("%s", document.error.c_str());
-        ImGui::PopStyleColor();
-    }
+    // The document ends when it is saved as another file.
+    const std::shared_ptr<const ClothTable> table = document.table;
     if (document.cloth &&
         ImGui::CollapsingHeader("Weave and yarns", ImGuiTreeNodeFlags_DefaultOpen)) {
         if (draw_cloth_controls(cloth_))
             session.edit_cloth(file, cloth_);
         draw_save(session, file);
     }
-    if (document.table && ImGui::CollapsingHeader("Fibres", ImGuiTreeNodeFlags_DefaultOpen))
-        draw_fibres(*document.table, pixel_ratio);
-    if (document.table && ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen))
-        draw_light(*document.table);
+    if (table && ImGui::CollapsingHeader("Fibres", ImGuiTreeNodeFlags_DefaultOpen))
+        draw_fibres(*table, pixel_ratio);
+    if (table && ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen))
+        draw_light(*table);
     ImGui::PopItemWidth();
 }
 

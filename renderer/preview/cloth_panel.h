@@ -9,18 +9,20 @@ namespace rapport {
 /// The cloth editor: weave, sett, yarns and fibres of one cloth file, and what it does with light.
 class ClothPanel {
   public:
-    /// Draws it into the current ImGui window for the cloth `file` of the session.
-    void draw(Session& session, const std::filesystem::path& file, float pixel_ratio);
+    /// Draws it into the current ImGui window for the cloth `file` of the session, which is another
+    /// once that has been saved as such.
+    void draw(Session& session, std::filesystem::path& file, float pixel_ratio);
 
   private:
     void draw_fibres(const ClothTable& table, float pixel_ratio);
     void draw_light(const ClothTable& table);
-    void draw_save(Session& session, const std::filesystem::path& file);
+    void draw_save(Session& session, std::filesystem::path& file);
 
     std::filesystem::path file_;
     std::shared_ptr<const Cloth> shown_; ///< of the session, from which `cloth_` started
     Cloth cloth_;                        ///< as the controls have it
     char target_[512] = {};              ///< name of the file to save as
+    std::filesystem::path refused_;      ///< there is such a file: asked again, it is overwritten
 
     glm::vec2 light_{-0.5f, 0}; ///< where it comes from, on the disc (hemisphere.h)
     bool transmitted_ = false;

@@ -43,12 +43,19 @@ ClothTable ready(const RisingMeasurement& measurement, const std::filesystem::pa
 
 } // namespace
 
-ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch) {
+ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch,
+                       const StopSignal& stopped) {
+    const auto asked = std::chrono::steady_clock::now();
+    const auto timed = [&](ClothTable table) {
+        table.seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
+        return table;
+    };
     if (is_stored(file))
-        return ready(read_table(file), nullptr, file.string());
+        return timed(ready(read_table(file), nullptr, file.string(), stopped));
     RisingMeasurement measurement(read(file));
-    measurement.advance({}, watch);
-    return ready(measurement, file);
+    measurement.advance(stopped, watch);
+    return timed(ready(measurement, file, stopped));
 }
 
 ClothWorker::ClothWorker() : thread_([this] { run(); }) {}
@@ -73,13 +80,24 @@ uint64_t ClothWorker::request(const std::filesystem::path& file,
         const std::scoped_lock lock(mutex_);
         number = task->request = ++requests_;
         tasks_[file] = std::move(task);
-        if (current_ && !stop_current_) {
-            stop_current_ = true;
-            stopped_at_ = Clock::now();
-        }
+        stop_current();
     }
     changed_.notify_all();
     return number;
+}
+
+void ClothWorker::forget(const std::filesystem::path& file) {
+    const std::scoped_lock lock(mutex_);
+    tasks_.erase(file);
+    if (current_ && current_->file == file)
+        stop_current();
+}
+
+void ClothWorker::stop_current() {
+    if (!current_ || stop_current_)
+        return;
+    stop_current_ = true;
+    stopped_at_ = Clock::now();
 }
 
 std::vector<ClothWorker::News> ClothWorker::take_news() {
@@ -144,7 +162,7 @@ bool ClothWorker::advance(Task& task, const StopSignal& stopped) {
         tell({task.file, task.request, std::make_shared<const ClothTable>(std::move(table)), {}});
     };
     if (!task.cloth && is_stored(task.file)) {
-        tell_of(first_table(task.file));
+        tell_of(first_table(task.file, {}, stopped));
         return false;
     }
     if (!task.measurement)

@@ -24,7 +24,8 @@ struct ClothTable {
 };
 
 /// Reads a `.bsdf`, or measures a `.toml` or `.wif` in haste.
-ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch = {});
+ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch = {},
+                       const StopSignal& stopped = {});
 
 /// Gets cloths' tables in the background: stored ones are read, others measured at rising accuracy
 /// down to ε = 0.1, the coarsest table first. What is asked for takes the place of what was asked
@@ -39,6 +40,8 @@ class ClothWorker {
     /// Asks for the table of a file as it is on the disk, or, with a cloth, of that cloth in its
     /// place. Returns the number of the request, counted up from 1.
     uint64_t request(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth = {});
+    /// Ends work on a file.
+    void forget(const std::filesystem::path& file);
 
     struct News {
         std::filesystem::path file;
@@ -65,6 +68,7 @@ class ClothWorker {
     };
 
     void run();
+    void stop_current(); ///< with the mutex held
     /// One step of a task; what it has to tell, and whether there is more to do.
     bool advance(Task& task, const StopSignal& stopped);
     void tell(News news);

@@ -40,14 +40,15 @@ std::vector<uint8_t> hemisphere_map(const TableBsdf& table, const glm::vec3& fro
     return bytes;
 }
 
-std::vector<float> intensity_profile(const TableBsdf& table, const glm::vec3& from, bool along_warp,
-                                     int count) {
+std::vector<float> intensity_profile(const TableBsdf& table, const glm::vec3& from,
+                                     bool transmitted, bool along_warp, int count) {
     std::vector<float> profile;
     for (int i = 0; i < count; ++i) {
         const float theta = static_cast<float>(kPi) * ((i + 0.5f) / count - 0.5f);
         const float across = std::sin(theta);
+        const float along = transmitted ? -std::cos(theta) : std::cos(theta);
         const Rgb value =
-            table.eval(from, {along_warp ? 0 : across, along_warp ? across : 0, std::cos(theta)});
+            table.eval(from, {along_warp ? 0 : across, along_warp ? across : 0, along});
         profile.push_back((value.r + value.g + value.b) / 3);
     }
     return profile;

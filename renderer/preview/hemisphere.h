@@ -22,7 +22,7 @@ std::vector<uint8_t> hemisphere_map(const TableBsdf& table, const glm::vec3& fro
 
 /// The same intensity [1/sr], in the mean of R, G and B, over the polar angle from −90° to 90° in
 /// the plane of the normal and the weft (or the warp), `count` values.
-std::vector<float> intensity_profile(const TableBsdf& table, const glm::vec3& from, bool along_warp,
-                                     int count);
+std::vector<float> intensity_profile(const TableBsdf& table, const glm::vec3& from,
+                                     bool transmitted, bool along_warp, int count);
 
 } // namespace rapport

@@ -18,18 +18,22 @@ void wrapped(const ImVec4& colour, const std::string& line) {
     ImGui::PopStyleColor();
 }
 
-/// A choice among files, shown by their names.
+/// A choice among files, shown by their names; none is what the scene has.
 bool pick_file(const char* label, std::filesystem::path& file,
                const std::vector<std::filesystem::path>& files) {
     bool picked = false;
-    const std::string shown = file.empty() ? "as in the scene" : file.filename().string();
-    if (!ImGui::BeginCombo(label, shown.c_str()))
+    constexpr const char* kNone = "as in the scene";
+    if (!ImGui::BeginCombo(label, file.empty() ? kNone : file.filename().c_str()))
         return false;
-    for (const std::filesystem::path& other : files)
-        if (ImGui::Selectable(other.filename().string().c_str(), other == file)) {
+    const auto offer = [&](const std::string& line, const std::filesystem::path& other) {
+        if (ImGui::Selectable(line.c_str(), other == file)) {
             picked = other != file;
             file = other;
         }
+    };
+    offer(kNone, {});
+    for (const std::filesystem::path& other : files) // of which two may have one name
+        offer(other.filename().string() + "##" + other.string(), other);
     ImGui::EndCombo();
     return picked;
 }
@@ -76,15 +80,14 @@ void draw_garment(Session& session, std::filesystem::path& selected) {
             changed |= ImGui::SliderFloat("rotation", &choice.rotation, -90, 90, "%.0f°");
             if (document)
                 wrapped(kGrey, table_line(*document));
-            if (document && !document->error.empty())
-                wrapped(kRed, document->error);
             if (document && document->cloth && choice.file != selected &&
                 ImGui::SmallButton("edit this cloth"))
                 selected = choice.file;
         }
         if (changed) {
             session.choose_cloth(name, choice);
-            selected = choice.file;
+            const auto now = session.choices().find(name);
+            selected = now == session.choices().end() ? "" : now->second.file;
         }
         ImGui::Spacing();
         ImGui::PopID();
@@ -130,8 +133,15 @@ void draw_progress(const Session& session) {
     }
     if (const std::filesystem::path file = session.worker().working_on(); !file.empty())
         text("measuring " + file.filename().string());
+}
+
+/// Last in the panel, for they come and go.
+void draw_messages(const Session& session, const std::filesystem::path& selected) {
     if (const std::string error = session.error(); !error.empty())
         wrapped(kRed, error);
+    for (const auto& [file, document] : session.documents())
+        if (!document.error.empty() && (file == selected || session.worn(file)))
+            wrapped(kRed, document.error);
     for (size_t i = session.notes().size(); i > 0 && i + 3 > session.notes().size(); --i)
         wrapped(kGrey, session.notes()[i - 1]);
 }
@@ -168,6 +178,7 @@ void draw_scene_panel(Session& session, std::filesystem::path& selected) {
         draw_files(session);
     }
     wrapped(kGrey, "drag: turn   right drag: move   wheel: nearer\ndouble click: look at   F: all");
+    draw_messages(session, selected);
     ImGui::PopItemWidth();
 }
 

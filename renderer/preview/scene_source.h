@@ -28,9 +28,9 @@ using LoadingWatch =
     std::function<void(const std::filesystem::path& file, const GoniophotometerProgress&)>;
 
 /// Reads the scene and all that it names. Tables in `known` are taken as they are; other cloths are
-/// read, or measured in haste. FileError as from what is read.
+/// read, or measured in haste. FileError as from what is read; Stopped while one is measured.
 LoadedScene load_scene(const SceneSource& source, const ClothTables& known = {},
-                       const LoadingWatch& watch = {});
+                       const LoadingWatch& watch = {}, const StopSignal& stopped = {});
 
 /// The table that a material asks for. FileError for a colourway that the cloth has not.
 std::shared_ptr<const TableBsdf> in_colourway(const ClothTable& table,

@@ -1,6 +1,8 @@
 #include "renderer/preview/session.h"
 
 #include "renderer/core/atomic_file.h"
+#include "renderer/core/error.h"
+#include "renderer/core/input_file.h"
 #include "renderer/core/png.h"
 #include "renderer/preview/camera_file.h"
 
@@ -36,6 +38,11 @@ bool ready(const auto& future) {
     return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
+void write_cloth(const Cloth& cloth, const std::filesystem::path& file) {
+    const std::string text = cloth_text(cloth);
+    write_stream_atomically(file, [&](std::ofstream& stream) { stream << text; });
+}
+
 } // namespace
 
 Session::Session(SceneSource source, const LoadingWatch& watch) : source_(std::move(source)) {
@@ -43,7 +50,7 @@ Session::Session(SceneSource source, const LoadingWatch& watch) : source_(std::m
     watch_.add(source_.path);
 }
 
-Session::~Session() = default;
+Session::~Session() { stop_reload_ = true; }
 
 void Session::take(LoadedScene loaded) {
     base_ = worn_ = loaded.scene;
@@ -62,10 +69,9 @@ void Session::take(LoadedScene loaded) {
             document.table = table;
             document.cloth = table->cloth;
             watch_.add(file);
-            if (document.cloth)
-                ask(file, document.cloth);
-            document.waiting = false; // it has a table, in haste
         }
+    for (const auto& [name, choice] : choices_)
+        open(choice.file);
     fill_shelf();
     for (const std::string& warning : loaded.warnings)
         notes_.push_back("warning: " + warning);
@@ -74,13 +80,17 @@ void Session::take(LoadedScene loaded) {
 }
 
 void Session::fill_shelf() {
-    std::set<std::filesystem::path> folders, files;
+    std::error_code error; // what cannot be listed has nothing to choose
+    std::set<std::filesystem::path> folders{
+        std::filesystem::weakly_canonical(source_.path).parent_path(),
+        std::filesystem::current_path(error)};
+    std::set<std::filesystem::path> files;
     for (const auto& [file, document] : documents_)
         folders.insert(file.parent_path());
     for (const std::filesystem::path& folder : folders) {
-        std::error_code error;
         for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-            if (entry.path().extension() == ".toml" || entry.path().extension() == ".bsdf")
+            if (const std::string kind = lower_extension(entry.path());
+                kind == ".toml" || kind == ".wif" || kind == ".bsdf")
                 files.insert(std::filesystem::weakly_canonical(entry.path()));
     }
     shelf_.assign(files.begin(), files.end());
@@ -122,10 +132,19 @@ void Session::frame_all() {
 }
 
 void Session::open(const std::filesystem::path& file) {
-    if (documents_.contains(file))
-        return;
-    ask(file, nullptr);
-    watch_.add(file);
+    ClothDocument& document = documents_[file];
+    if (!document.table && !document.waiting) {
+        ask(file, nullptr);
+        watch_.add(file);
+    } else if (document.cloth && document.request == 0) {
+        ask(file, document.cloth);
+        document.waiting = false; // it has a table, in haste
+    }
+}
+
+bool Session::worn(const std::filesystem::path& file) const {
+    return std::ranges::any_of(choices_,
+                               [&](const auto& choice) { return choice.second.file == file; });
 }
 
 void Session::ask(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth) {
@@ -136,10 +155,17 @@ void Session::ask(const std::filesystem::path& file, std::shared_ptr<const Cloth
 }
 
 void Session::choose_cloth(const std::string& material, const ClothChoice& choice) {
-    ClothChoice canonical = choice;
-    canonical.file = std::filesystem::weakly_canonical(choice.file);
-    choices_[material] = own_choices_[material] = canonical;
-    open(canonical.file);
+    if (choice.file.empty()) {
+        own_choices_.erase(material);
+        choices_.erase(material);
+        choices_.merge(worn_cloths(*base_));
+    } else {
+        ClothChoice canonical = choice;
+        canonical.file = std::filesystem::weakly_canonical(choice.file);
+        choices_[material] = own_choices_[material] = canonical;
+    }
+    if (const auto worn = choices_.find(material); worn != choices_.end())
+        open(worn->second.file);
     redress_ = true;
     restart();
 }
@@ -167,39 +193,55 @@ void Session::attempt(const std::function<void()>& action) {
     }
 }
 
-void Session::save_cloth(const std::filesystem::path& file, const std::filesystem::path& target) {
+std::filesystem::path Session::save_cloth(const std::filesystem::path& file,
+                                          const std::filesystem::path& target, bool overwrite) {
+    std::filesystem::path next = file;
     attempt([&] {
-        ClothDocument& document = documents_.at(file);
-        const std::string text = cloth_text(*document.cloth);
-        write_stream_atomically(target, [&](std::ofstream& stream) { stream << text; });
+        if (lower_extension(target) != ".toml")
+            throw FileError(target.string(), "", "a name that ends in .toml", "another ending");
         const std::filesystem::path saved = std::filesystem::weakly_canonical(target);
+        if (saved != file && !overwrite && std::filesystem::exists(saved))
+            throw FileError(target.string(), "", "a new name, or to be told again to overwrite",
+                            "a file");
+        ClothDocument& document = documents_.at(file);
+        write_cloth(*document.cloth, saved);
         watch_.add(saved);
         notes_.push_back("saved " + saved.string());
         document.edited = false;
+        next = saved;
         if (saved != file)
             go_on_with(saved, file);
     });
+    return next;
 }
 
 void Session::rescue(const std::string& why) {
     notes_.push_back(why);
     for (const auto& [file, document] : documents_)
         if (document.edited)
-            attempt([&] {
-                const std::string name = file.stem().string() + "-rescued.toml";
-                const std::string text = cloth_text(*document.cloth);
-                write_stream_atomically(name, [&](std::ofstream& stream) { stream << text; });
-                notes_.push_back("saved " + name);
-            });
+            rescue(file, *document.cloth);
 }
 
-/// What was worn from `file` is worn from `target`, where it has just been written.
+void Session::rescue(const std::filesystem::path& file, const Cloth& cloth) {
+    attempt([&] {
+        const std::string stem = file.stem().string() + "-rescued";
+        std::string name = stem + ".toml";
+        for (int copy = 2; std::filesystem::exists(name); ++copy)
+            name = fmt::format("{}-{}.toml", stem, copy);
+        write_cloth(cloth, name);
+        notes_.push_back("saved " + name);
+    });
+}
+
+/// What was worn from `file` is worn from `target`, where it has just been written; nobody wears
+/// `file` any more.
 void Session::go_on_with(const std::filesystem::path& target, const std::filesystem::path& file) {
-    documents_[target] = documents_.at(file);
+    documents_[target] = std::move(documents_.at(file));
+    documents_.erase(file);
+    worker_.forget(file);
     const bool waiting = documents_[target].waiting;
     ask(target, documents_[target].cloth);
     documents_[target].waiting = waiting;
-    ask(file, nullptr); // is again what it is on the disk
     for (auto& [name, choice] : choices_)
         if (choice.file == file) {
             choice.file = target;
@@ -249,18 +291,33 @@ std::string Session::error() const { return scene_error_.empty() ? tracer_.error
 void Session::look_at_files() {
     for (const std::filesystem::path& file : watch_.changed()) {
         if (file != source_.path) {
-            documents_[file].edited = false;
-            ask(file, nullptr);
-        } else if (!reload_.valid()) {
-            ClothTables known;
-            for (const auto& [cloth, document] : documents_)
-                if (document.table)
-                    known[cloth] = document.table;
-            reload_ = std::async(std::launch::async, [source = source_, known = std::move(known)] {
-                return load_scene(source, known);
-            });
+            if (const auto found = documents_.find(file); found != documents_.end()) {
+                ClothDocument& document = found->second;
+                if (document.edited) {
+                    notes_.push_back(file.filename().string() +
+                                     " changed on the disk and takes the place of the edits");
+                    rescue(file, *document.cloth);
+                }
+                document.edited = false;
+                ask(file, nullptr);
+            }
+        } else {
+            scene_changed_ = stop_reload_ = true; // one that goes on reads what was there before
         }
     }
+    if (scene_changed_ && !reload_.valid())
+        start_reload();
+}
+
+void Session::start_reload() {
+    ClothTables known;
+    for (const auto& [cloth, document] : documents_)
+        if (document.table)
+            known[cloth] = document.table;
+    scene_changed_ = stop_reload_ = false;
+    reload_ = std::async(std::launch::async, [this, source = source_, known = std::move(known)] {
+        return load_scene(source, known, {}, [this] { return stop_reload_.load(); });
+    });
 }
 
 void Session::finish_reload() {
@@ -270,6 +327,7 @@ void Session::finish_reload() {
         take(reload_.get());
         scene_error_.clear();
         notes_.push_back("loaded " + source_.path.string());
+    } catch (const Stopped&) { // it is loaded anew
     } catch (const std::exception& error) {
         scene_error_ = error.what();
     }
@@ -277,9 +335,10 @@ void Session::finish_reload() {
 
 void Session::take_news() {
     for (ClothWorker::News& news : worker_.take_news()) {
-        ClothDocument& document = documents_[news.file];
-        if (news.request != document.request)
+        const auto found = documents_.find(news.file);
+        if (found == documents_.end() || news.request != found->second.request)
             continue;
+        ClothDocument& document = found->second;
         document.waiting = false;
         document.error = news.error;
         if (!news.table)
@@ -287,8 +346,7 @@ void Session::take_news() {
         document.table = news.table;
         if (!document.edited)
             document.cloth = news.table->cloth;
-        const auto wears = [&](const auto& choice) { return choice.second.file == news.file; };
-        if (std::ranges::any_of(choices_, wears)) {
+        if (worn(news.file)) {
             redress_ = true;
             restart();
         }

@@ -38,11 +38,15 @@ class Session {
     void frame_all();
 
     // What a person does in the panel.
+    /// Of no file: what it is in the scene.
     void choose_cloth(const std::string& material, const ClothChoice& choice);
     void set_lights(const LightSettings& lights);
     void edit_cloth(const std::filesystem::path& file, Cloth cloth);
-    /// Writes the cloth as edited, and goes on with that file; `notes` tells of it.
-    void save_cloth(const std::filesystem::path& file, const std::filesystem::path& target);
+    /// Writes the cloth as edited, and goes on with that file; `notes` tells of it. Returns the
+    /// file to go on with: `file` if that fails, as it does where the target is no .toml, or, but
+    /// for `overwrite`, another file that there is already.
+    std::filesystem::path save_cloth(const std::filesystem::path& file,
+                                     const std::filesystem::path& target, bool overwrite = false);
     /// Writes the picture as it is: the EXR with all layers, the PNG as displayed. In the
     /// background; `notes` tells of it.
     void save_picture(const std::filesystem::path& exr, const std::filesystem::path& png);
@@ -64,13 +68,15 @@ class Session {
     const Camera& camera() const { return camera_->camera(); }
     const Scene& scene() const { return *base_; }
     const ClothChoices& choices() const { return choices_; }
+    bool worn(const std::filesystem::path& file) const;
     const std::set<std::string>& wearers() const { return wearers_; }
     const LightSettings& lights() const { return lights_; }
     const LightKinds& light_kinds() const { return light_kinds_; }
     const std::map<std::filesystem::path, ClothDocument>& documents() const { return documents_; }
-    /// Cloth files beside those in use, sorted.
+    /// Cloth files beside those in use and the scene and in the working folder, sorted.
     const std::vector<std::filesystem::path>& shelf() const { return shelf_; }
     const SceneSource& source() const { return source_; }
+    bool reloading() const { return reload_.valid(); }
     /// What went wrong with the scene or the picture, or empty; the old scene stays.
     std::string error() const;
     /// What was done, the latest last.
@@ -79,14 +85,18 @@ class Session {
     const ClothWorker& worker() const { return worker_; }
 
   private:
+    /// Writes a cloth as edited into the working folder, under a name of its own.
+    void rescue(const std::filesystem::path& file, const Cloth& cloth);
     /// Runs what writes files; what goes wrong becomes a note.
     void attempt(const std::function<void()>& action);
     void go_on_with(const std::filesystem::path& target, const std::filesystem::path& file);
     void take(LoadedScene loaded);
+    /// Has the cloth measured, unless it is already.
     void open(const std::filesystem::path& file);
     void ask(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth);
     void take_news();
     void look_at_files();
+    void start_reload();
     void finish_reload();
     void fill_shelf();
     void show();
@@ -107,8 +117,10 @@ class Session {
     FileWatch watch_;
     std::string scene_error_;
     std::vector<std::string> notes_;
-    bool stale_ = true;    ///< the picture is of another view
-    bool redress_ = false; ///< and of other cloths or lights
+    bool stale_ = true;          ///< the picture is of another view
+    bool redress_ = false;       ///< and of other cloths or lights
+    bool scene_changed_ = false; ///< on the disk, since it was last loaded
+    std::atomic<bool> stop_reload_ = false;
     std::future<LoadedScene> reload_;
     std::future<std::string> saving_;
     ClothWorker worker_;

@@ -2,6 +2,7 @@
 #include "renderer/preview/window.h"
 #include "tests/support/sessions.h"
 #include "tests/support/virtual_display.h"
+#include "tests/support/window_hand.h"
 
 #include <epoxy/gl.h> // before GLFW
 // clang-format off
@@ -20,6 +21,8 @@ namespace {
 
 using tests::next_picture;
 using tests::SquareScene;
+using tests::tick_until;
+using tests::WindowHand;
 
 /// Lets the libraries of the graphics driver stay until the program ends. What they have allocated
 /// is reached from their own variables, and when GLFW had unloaded them it would count as leaked.
@@ -146,6 +149,146 @@ TEST_F(ViewWindow, TheMouseTurnsAndTheWheelBringsNearer) {
     EXPECT_NEAR(glm::distance(poses[4][3], poses[10][3]), 0, 2); // turned, about what it looks at
     EXPECT_NE(poses[12][3], poses[17][3]);
     EXPECT_EQ(poses[12][2], poses[17][2]); // nearer, in the same direction
+}
+
+TEST_F(ViewWindow, ADraggedSliderIsMeasuredWhenItIsLetGo) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    uint64_t request = document().request;
+    WindowHand hand;
+    for (const char* sett : {"ends", "picks"}) {
+        hand.point({"cloth", {sett}}, {0.1f, 0.5f});
+        hand.press();
+        hand.move({10, 0});
+        hand.move({5, 0});
+        hand.then([&] { EXPECT_EQ(document().request, request); }); // not before it is let go
+        hand.release();
+        hand.wait_until([&] { return document().request > request; });
+        hand.then([&] { request = document().request; });
+    }
+    hand.use(session);
+    tick_until(session, [&] { return !document().waiting; });
+    EXPECT_EQ(document().error, "");
+    EXPECT_GT(document().table->cloth->ends_per_cm, 25);
+    EXPECT_GT(document().table->cloth->picks_per_cm, 25);
+}
+
+TEST_F(ViewWindow, AColourCanBeChosenWhereThereIsNone) {
+    const SquareScene files(SquareScene::Worn::measured);
+    std::string text = tests::coarse_cloth("0.3");
+    text.erase(text.find("color = [0.3, 0.3, 0.3]\n[weft]"), 24);
+    text.replace(text.rfind("color = [0.3, 0.3, 0.3]"), 23, "absorption_per_um = 0.001");
+    tests::write_bytes(files.cloth(), text);
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    WindowHand hand;
+    for (const char* yarn : {"Warp", "Weft"}) {
+        hand.point({"cloth", {yarn, yarn, "colour", "##X"}});
+        hand.press();
+        for (int way = 0; way < 4; ++way)
+            hand.move({-30, 0});
+        hand.release();
+        hand.wait_until([&] { return document().edited; });
+    }
+    hand.use(session);
+    EXPECT_EQ(document().error, "");
+    for (const YarnSpec* yarn : {&document().cloth->warp, &document().cloth->weft}) {
+        ASSERT_TRUE(yarn->fibre.color);
+        EXPECT_LT(yarn->fibre.color->at(0), 0.9);
+        EXPECT_EQ(yarn->fibre.color->at(1), 0.999);
+        EXPECT_FALSE(yarn->fibre.absorption_per_um);
+    }
+}
+
+TEST_F(ViewWindow, KeysAndClicksDoWhatTheyAreFor) {
+    const SquareScene files(SquareScene::Worn::measured);
+    std::filesystem::current_path(files.scene().parent_path());
+    Session session({files.scene()});
+    const auto cloth = [&] { return session.documents().at(files.cloth()).cloth; };
+    const std::shared_ptr<const Cloth> before = cloth();
+    std::vector<glm::mat4> poses;
+    const auto note_pose = [&] { poses.push_back(session.camera().to_world); };
+    WindowHand hand;
+    hand.point({"picture", {"picture"}}, {0.55f, 0.45f});
+    hand.then([] { ImGui::GetIO().MouseDoubleClickTime = 10; }); // frames may be slow
+    hand.click();
+    hand.then(note_pose); // one click alone is nothing
+    hand.click();
+    hand.then(note_pose);
+    hand.key('F');
+    hand.then(note_pose);
+    hand.wait_until([&] { return session.picture() != nullptr; });
+    hand.key('S');
+    hand.wait_until([&] { return !session.notes().empty(); });
+    hand.point({"cloth", {"drawdown"}}, {0.25f, 0.25f}); // end 1, pick 2
+    hand.click();
+    hand.wait_until([&] { return cloth() != before; });
+    hand.use(session);
+    ASSERT_EQ(poses.size(), 3u);
+    EXPECT_EQ(poses[0], load_scene({files.scene()}).scene->camera.to_world);
+    EXPECT_NE(poses[1][3], poses[0][3]);
+    EXPECT_EQ(poses[1][2], poses[0][2]); // moved sideways
+    EXPECT_NE(poses[2][3], poses[1][3]);
+    EXPECT_TRUE(std::filesystem::exists("scene-view.png"));
+    EXPECT_TRUE(std::filesystem::exists("scene-view.exr"));
+    for (int pick = 0; pick < 2; ++pick)
+        for (int end = 0; end < 2; ++end)
+            EXPECT_EQ(cloth()->draft.up(end, pick) != before->draft.up(end, pick),
+                      end == 0 && pick == 1);
+}
+
+TEST_F(ViewWindow, AnErrorMovesNoControls) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    EXPECT_GT(document().table->seconds, 0);
+    std::vector<glm::vec2> places;
+    WindowHand hand;
+    const auto note_places = [&] {
+        for (const WindowHand::Place& place :
+             {WindowHand::Place{"cloth", {"picks"}}, {"scene", {"save picture (S)"}}}) {
+            hand.point(place);
+            hand.then([&] { places.push_back(hand.mouse()); });
+        }
+    };
+    hand.wait_until([&] { return session.picture() && session.picture()->samples > 1; });
+    note_places();
+    hand.point({"cloth", {"ends"}}, {0.9f, 0.5f});
+    hand.click();
+    hand.wait_until([&] { return !document().error.empty(); });
+    note_places();
+    hand.use(session);
+    ASSERT_EQ(places.size(), 4u);
+    EXPECT_EQ(places[0], places[2]);
+    EXPECT_EQ(places[1], places[3]);
+}
+
+TEST_F(ViewWindow, ThePanelGoesOnWithTheFileThatItSaved) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const std::filesystem::path saved =
+        std::filesystem::weakly_canonical(files / "cloth-edited.toml");
+    tests::write_bytes(saved, "another's");
+    WindowHand hand;
+    hand.point({"cloth", {"ends"}}, {0.1f, 0.5f});
+    hand.click();
+    hand.wait_until([&] { return session.documents().at(files.cloth()).edited; });
+    hand.point({"cloth", {"###save"}});
+    hand.click();
+    hand.then([&] { // there is such a file: to be told again
+        EXPECT_EQ(session.choices().at("Body").file, files.cloth());
+        EXPECT_EQ(tests::read_bytes(saved), "another's");
+    });
+    hand.click();
+    hand.wait_until([&] { return session.choices().at("Body").file == saved; });
+    hand.point({"cloth", {"picks"}}, {0.1f, 0.5f});
+    hand.click();
+    hand.wait_until([&] { return session.documents().at(saved).edited; });
+    hand.use(session);
+    EXPECT_LT(read_cloth(saved).ends_per_cm, 19);
+    EXPECT_EQ(read_cloth(saved).picks_per_cm, 20);
+    EXPECT_LT(session.documents().at(saved).cloth->picks_per_cm, 19);
 }
 
 TEST_F(ViewWindow, TextFollowsTheScale) {

@@ -3,6 +3,8 @@
 #include "renderer/preview/session.h"
 #include "tests/support/sessions.h"
 
+#include <cstring>
+
 // The window without the window: the same calls as its input makes.
 
 namespace rapport {
@@ -110,10 +112,36 @@ TEST(Session, AClothEditChangesThePictureAndTheErrorFalls) {
     EXPECT_LT(mean(after, "albedo.G"), 0.7 * mean(before, "albedo.G"));
     tick_until(session, [&] { return document().table->accuracy < 0.4 * first; });
 
-    session.save_cloth(files.cloth(), files / "red.toml");
-    EXPECT_EQ(session.choices().at("Body").file.filename(), "red.toml");
+    const std::filesystem::path saved = session.save_cloth(files.cloth(), files / "red.toml");
+    EXPECT_EQ(saved.filename(), "red.toml");
+    EXPECT_EQ(session.choices().at("Body").file, saved);
+    EXPECT_FALSE(session.documents().contains(files.cloth())); // nobody wears it: not measured
+    tick_until(session, [&] { return session.worker().working_on() == saved; });
     EXPECT_EQ(read_cloth(files / "red.toml").warp.fibre.color, red.warp.fibre.color);
     EXPECT_EQ(read_cloth(files.cloth()).warp.fibre.color->at(0), 0.3);
+}
+
+TEST(Session, ABareModelFindsClothsToWearAndCanTakeThemOff) {
+    const SquareScene files(SquareScene::Worn::measured);
+    tests::write_bytes(files / "draft.wif", "");
+    Session session({files / "square.glb"});
+    session.resize({64, 48});
+    EXPECT_TRUE(session.choices().empty());
+    for (const auto& file : {files.cloth(), std::filesystem::weakly_canonical(files / "draft.wif")})
+        EXPECT_EQ(std::ranges::count(session.shelf(), file), 1) << file;
+    const Image bare = next_picture(session, 16)->image;
+    session.choose_cloth("Body", {files.cloth(), "", 0});
+    tick_until(session, [&] { return session.documents().at(files.cloth()).table != nullptr; });
+    EXPECT_FALSE(compare(next_picture(session, 16)->image, bare).agree);
+    session.choose_cloth("Body", {});
+    EXPECT_TRUE(session.choices().empty());
+    EXPECT_TRUE(compare(next_picture(session, 16)->image, bare).agree);
+
+    // In a scene of its own cloth, that is back.
+    Session dressed({files.scene()});
+    dressed.choose_cloth("Body", {files / "draft.wif", "", 0});
+    dressed.choose_cloth("Body", {});
+    EXPECT_EQ(dressed.choices().at("Body").file, files.cloth());
 }
 
 TEST(Session, TakesFiftyClothEditsOneAfterTheOther) {
@@ -152,6 +180,47 @@ TEST(Session, KeepsTheOldClothUntilABrokenOneIsMended) {
     EXPECT_EQ(document().table->cloth->warp.fibre.color->at(0), 0.55);
 }
 
+TEST(Session, KeepsEditsOfAClothThatChangesOnTheDisk) {
+    const SquareScene files(SquareScene::Worn::measured);
+    const std::filesystem::path folder = std::filesystem::current_path();
+    std::filesystem::current_path(files.scene().parent_path());
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    const auto edit = [&](double ends_per_cm) {
+        Cloth cloth = *document().cloth;
+        cloth.ends_per_cm = ends_per_cm;
+        session.edit_cloth(files.cloth(), cloth);
+    };
+    edit(17);
+    tests::write_bytes(files.cloth(), tests::coarse_cloth("0.55"));
+    tick_until(session, [&] { return !document().edited && !document().waiting; });
+    EXPECT_EQ(read_cloth("cloth-rescued.toml").ends_per_cm, 17);
+    EXPECT_EQ(session.notes().back(), "saved cloth-rescued.toml");
+    EXPECT_EQ(document().cloth->warp.fibre.color->at(0), 0.55);
+    edit(18);
+    tests::write_bytes(files.cloth(), "broken");
+    tick_until(session, [&] { return !document().error.empty(); });
+    EXPECT_EQ(read_cloth("cloth-rescued-2.toml").ends_per_cm, 18);
+    EXPECT_EQ(read_cloth("cloth-rescued.toml").ends_per_cm, 17);
+    std::filesystem::current_path(folder);
+}
+
+TEST(Session, SavesAClothOnlyOverItsOwnFileUnlessToldAgain) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const std::filesystem::path other = std::filesystem::weakly_canonical(files / "other.toml");
+    tests::write_bytes(other, "another's");
+    EXPECT_EQ(session.save_cloth(files.cloth(), other), files.cloth());
+    EXPECT_NE(session.notes().back().find("other.toml"), std::string::npos);
+    EXPECT_EQ(tests::read_bytes(other), "another's");
+    for (const char* name : {"scene.pbrt", "", "cloth"})
+        EXPECT_EQ(session.save_cloth(files.cloth(), files / name, true), files.cloth()) << name;
+    EXPECT_NE(tests::read_bytes(files.scene()).find("WorldBegin"), std::string::npos);
+    EXPECT_EQ(session.save_cloth(files.cloth(), files.cloth()), files.cloth());
+    EXPECT_EQ(session.save_cloth(files.cloth(), other, true), other);
+    EXPECT_EQ(read_cloth(other).ends_per_cm, 20);
+}
+
 TEST(Session, KeepsTheOldSceneUntilABrokenOneIsMended) {
     const SquareScene files(SquareScene::Worn::stored);
     Session session({files.scene()});
@@ -167,6 +236,39 @@ TEST(Session, KeepsTheOldSceneUntilABrokenOneIsMended) {
     tests::write_bytes(files.scene(), mended + "# mended\n");
     tick_until(session, [&] { return session.error().empty() && !session.notes().empty(); });
     EXPECT_GT(difference(next_picture(session, 4)->image, before), 0.05);
+}
+
+/// Lets the scene name a cloth that takes long to measure.
+std::string slowly_loaded(const SquareScene& files) {
+    std::string cloth = tests::coarse_cloth("0.3");
+    for (const auto& [from, to] :
+         {std::pair("fibres = 3\n", "fibres = 3000\n"), {"diameter_um = 60", "diameter_um = 1.5"}})
+        for (size_t at; (at = cloth.find(from)) != std::string::npos;)
+            cloth.replace(at, std::strlen(from), to);
+    tests::write_bytes(files / "slow.toml", cloth);
+    std::string text = tests::read_bytes(files.scene());
+    text.replace(text.find("table.bsdf"), 10, "slow.toml");
+    return text;
+}
+
+TEST(Session, ASceneThatChangesWhileItReloadsIsLoadedAgain) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    const std::string text = tests::read_bytes(files.scene());
+    tests::write_bytes(files.scene(), slowly_loaded(files));
+    tick_until(session, [&] { return session.reloading(); });
+    tests::write_bytes(files.scene(), text + "Shape \"sphere\"\n");
+    tick_until(session, [&] { return session.scene().surfaces().size() == 3; });
+}
+
+TEST(Session, ClosesWhileItReloads) {
+    const SquareScene files(SquareScene::Worn::stored);
+    auto session = std::make_unique<Session>(SceneSource{files.scene()});
+    tests::write_bytes(files.scene(), slowly_loaded(files));
+    tick_until(*session, [&] { return session->reloading(); });
+    const auto start = std::chrono::steady_clock::now();
+    session.reset();
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
 }
 
 TEST(Session, SavesThePictureThatIsShown) {
