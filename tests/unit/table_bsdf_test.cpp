@@ -20,7 +20,7 @@ glm::vec3 direction(double theta_degrees, double phi_degrees, Side side = Side::
 }
 
 const TableBsdf& satin() {
-    static const TableBsdf bsdf(tests::synthetic_table(satin_intensity, 0.05), "satin.bsdf");
+    static const TableBsdf bsdf(tests::synthetic_table(satin_intensity, 0.04), "satin.bsdf");
     return bsdf;
 }
 
@@ -372,6 +372,38 @@ TEST(TableBsdf, SpectralBandsBecomeColour) {
     EXPECT_GE(colour.r, 0);
     EXPECT_GT(colour.g, colour.r);
     EXPECT_NEAR(luminance(colour), luminance(expected), 1e-4);
+}
+
+TEST(TableBsdf, SaturatedSpectraMakeNoEnergy) {
+    // Magenta and orange are brighter than white in the red of linear sRGB. That channel alone is
+    // taken down to 1, together with what passes straight through; a colour within stays.
+    const Bands bands = Bands::from_edges({400, 500, 520, 700});
+    const auto leaving = [&](const Rgb& spectrum, const glm::vec3& eye) {
+        BsdfTable table = tests::small_synthetic_table(
+            [&](const IncidentDirection&, const glm::dvec3&, size_t band) {
+                return 0.75 * spectrum[static_cast<int>(band)] / (4 * kPi);
+            },
+            0, bands);
+        for (size_t i = 0; i < table.unscattered.size(); ++i)
+            table.unscattered[i] = 0.25f * spectrum[static_cast<int>(i % 3)];
+        const TableBsdf bsdf(std::move(table), "");
+        return bsdf.albedo(eye) + bsdf.unscattered(eye);
+    };
+    const auto linear = [&](const Rgb& spectrum) {
+        const std::vector<Rgb> rgb = bands.to_rgb();
+        return glm::mat3(rgb[0], rgb[1], rgb[2]) * spectrum;
+    };
+    const Rgb magenta(0.98f, 0, 0.98f), dim = 0.5f * magenta, orange(0, 0, 0.98f);
+    ASSERT_GT(linear(magenta).r, 1.1f);
+    for (const glm::vec3& eye : eyes()) {
+        const Rgb bright = leaving(magenta, eye), within = leaving(dim, eye);
+        for (int channel = 0; channel < 3; ++channel) {
+            EXPECT_NEAR(bright[channel], std::min(linear(magenta)[channel], 1.0f), 1e-4);
+            EXPECT_NEAR(within[channel], linear(dim)[channel], 1e-4);
+        }
+        EXPECT_NEAR(leaving(orange, eye).r, 1, 1e-4);
+        EXPECT_GT(leaving(orange, eye).g, 0.75f);
+    }
 }
 
 TEST(TableBsdf, RefusesTablesWithGaps) {
