@@ -217,6 +217,9 @@ class Reader {
         if (table_.grid_phi[0] != 0)
             fail("grid_phi[0]", "0", fmt::format("{}", table_.grid_phi[0]));
         const size_t thetas = table_.grid_theta.size(), phis = table_.grid_phi.size();
+        // All share one direction there: a small file would have nodes without bound.
+        if (table_.grid_theta.back() == 0 && phis > 1)
+            fail("grid_phi", "one φ where the only θ is 0", fmt::format("{}", phis));
         table_.grid_index = array<uint32_t>("grid_index", {2, thetas, phis});
         for (size_t i = 0; i < table_.grid_index.size(); ++i)
             check_grid_index(i, thetas * phis);

@@ -268,6 +268,26 @@ TEST_F(BsdfFile, IgnoresFieldsOfOthers) {
     EXPECT_EQ(error.found, "none");
 }
 
+TEST_F(BsdfFile, TheNormalAloneIsOneNode) {
+    // Of two directions, 100,000 nodes.
+    const FileError error = error_after([](TensorFile& fields) {
+        constexpr size_t kPhis = 100000;
+        std::vector<double> phi(kPhis);
+        std::vector<uint32_t> index(2 * kPhis);
+        const auto front = fields.at("grid_index").values<uint32_t>();
+        for (size_t i = 0; i < kPhis; ++i) {
+            phi[i] = 2 * kPi * static_cast<double>(i) / kPhis;
+            index[i] = front.front();
+            index[kPhis + i] = front[front.size() / 2];
+        }
+        fields["grid_theta"] = TensorField::of<double>({1}, {0});
+        fields["grid_phi"] = TensorField::of<double>({kPhis}, phi);
+        fields["grid_index"] = TensorField::of<uint32_t>({2, 1, kPhis}, index);
+    });
+    EXPECT_EQ(error.place, "grid_phi");
+    EXPECT_EQ(error.found, "100000");
+}
+
 TEST_F(BsdfFile, NamesTheMissingField) {
     write_table(small_synthetic_table(satin_intensity), path_);
     for (const auto& [name, field] : read_tensor_file(path_)) {
