@@ -185,6 +185,51 @@ TEST(TableBsdf, AlbedoLiesBetweenThatOfTheNodesAround) {
     EXPECT_NEAR(bsdf.albedo(direction(40, 357)).g, 0.2f * last.g + 0.8f * first.g, 1e-5);
 }
 
+TEST(TableBsdf, NothingSpikesTowardsTheHorizon) {
+    // From the last but one θ of the table to the horizon, all φ: the brightest light is as bright
+    // as at one of the two nodes, albedo lies between theirs, and no light changes suddenly: in a
+    // quarter of a degree by a 1/32 of the way between the nodes, and as the highlight moves.
+    const TableBsdf& bsdf = satin();
+    const BsdfTable& table = bsdf.table();
+    const double low = degrees(table.grid_theta.end()[-2]), high = degrees(table.grid_theta.back());
+    for (const Side side : {Side::front, Side::back})
+        for (const double phi : {0.0, 7.0, 45.0, 90.0, 187.0, 262.0}) {
+            std::vector<glm::vec3> lights;
+            const ExitBins exits(table.exits, spherical_direction(radians(high), radians(phi)),
+                                 table.exit_axis[static_cast<size_t>(side)]);
+            for (size_t bin = 0; bin < table.exits.bins(); ++bin)
+                for (const double xi : {-0.9, 0.0, 0.9})
+                    for (const float up : {-1.0f, 1.0f}) {
+                        lights.emplace_back(exits.direction(bin, xi, 0.5 * xi));
+                        lights.back().z *= up;
+                    }
+            const auto seen = [&](double theta) {
+                std::vector<float> intensity;
+                for (const glm::vec3& light : lights)
+                    intensity.push_back(bsdf.eval(direction(theta, phi, side), light).r);
+                return intensity;
+            };
+            const auto albedo = [&](double theta) {
+                return bsdf.albedo(direction(theta, phi, side)).r;
+            };
+            std::vector<float> before = seen(low);
+            const float brightest =
+                std::max(std::ranges::max(before), std::ranges::max(seen(high)));
+            const auto [least, most] = std::minmax({albedo(low), albedo(high)});
+            for (int step = 1; step <= 40; ++step) {
+                const double theta = std::min(low + 0.25 * step, 89.99);
+                const std::vector<float> now = seen(theta);
+                for (size_t i = 0; i < now.size(); ++i) {
+                    ASSERT_LE(now[i], 1.02f * brightest) << theta << " " << phi;
+                    ASSERT_NEAR(now[i], before[i], 0.05f * brightest) << theta << " " << phi;
+                }
+                EXPECT_GE(albedo(theta), least - 1e-5f) << theta << " " << phi;
+                EXPECT_LE(albedo(theta), most + 1e-5f) << theta << " " << phi;
+                before = now;
+            }
+        }
+}
+
 TEST(TableBsdf, HighlightsMoveBetweenNodesInsteadOfDoubling) {
     // A narrow ridge on the cone of the warp, or on that of the weft. Half-way between nodes it
     // still stands where it should, as high as at a node; where a blend in place would leave its
