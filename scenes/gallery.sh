@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Six pictures and a sheet of them all: the dress in four cloths, a garment by somebody else, and the fibres of a
-# satin beside its table. Measures the cloths whose tables are not in build/gallery yet, which takes most of the time.
+# satin beside its table. Measures the cloths whose tables build/gallery has not, or not in the program's format, which
+# takes most of the time.
 #   bash scenes/gallery.sh [PROGRAM [MODEL.glb]]
 # The sheet wants python3-matplotlib.
 set -euo pipefail
@@ -11,8 +12,9 @@ accuracy=${ACCURACY:-0.8} error=${ERROR:-0.03} height=${HEIGHT:-800}
 out=build/gallery
 mkdir -p "$out" build/quickstart
 
+readable() { "$rapport" info "$1" >/dev/null 2>&1; }
 table() {
-    [[ -f $out/$1.bsdf ]] || "$rapport" vgsp "scenes/cloths/$1.toml" -o "$out/$1.bsdf" --accuracy "$accuracy" --resume
+    readable "$out/$1.bsdf" || "$rapport" vgsp "scenes/cloths/$1.toml" -o "$out/$1.bsdf" --accuracy "$accuracy" --resume
 }
 picture() { # name width arguments
     "$rapport" render "${@:3}" --size "$2x$height" --error "$error" -o "$out/$1.png"
@@ -23,7 +25,7 @@ for cloth in quickstart denim silk-shantung linen; do
     picture "dress-$cloth" $((height * 4 / 5)) scenes/quickstart.pbrt --cloth Body="$out/$cloth.bsdf"
 done
 [[ -f $model ]] && picture shared $((height * 4 / 5)) "$model" --cloth "$out/silk-shantung.bsdf"
-[[ -f build/quickstart/satin.bsdf ]] || cp "$out/quickstart.bsdf" build/quickstart/satin.bsdf
+readable build/quickstart/satin.bsdf || cp "$out/quickstart.bsdf" build/quickstart/satin.bsdf
 # Paths find the lamp by themselves alone between fibres: no sampling of lights to bring the noise down.
 "$rapport" render scenes/close-up.pbrt --size "$((height * 8 / 5))x$height" --spp 64 -o "$out/close-up.png"
 

@@ -21,6 +21,10 @@ using Shape = std::vector<uint64_t>;
 /// float sums, not a lost path.
 constexpr double kEnergyTolerance = 1e-3;
 constexpr double kEdgeTolerance = 1e-12; // rounding, on other machines
+constexpr double kAngleTolerance = 1e-6; // relative, of single precision
+
+/// Raised whenever what the fields mean changes; files from before there was one count as 0.
+constexpr uint32_t kFormat = 1;
 
 template <class T> struct TypeOf;
 template <> struct TypeOf<uint8_t> { static constexpr Type value = Type::u8; };
@@ -41,6 +45,17 @@ std::string describe(Type type, const Shape& shape) {
 /// Before the names of the fields of colourway number `i`.
 std::string colourway_prefix(size_t i) { return fmt::format("colourway_{}_", i); }
 
+/// [D, columns]: of the bins of a column, all of the same size.
+std::vector<float> solid_angles(const BsdfTable& table) {
+    std::vector<float> angles;
+    for (size_t d = 0; d < table.directions(); ++d) {
+        const ExitBins exits = table.exits_of(d);
+        for (size_t bin = 0; bin < table.exits.bins(); bin += table.exits.rows())
+            angles.push_back(static_cast<float>(exits.solid_angle(bin)));
+    }
+    return angles;
+}
+
 /// Turns the fields of one file into a table, or says what is wrong with which of them.
 class Reader {
   public:
@@ -50,14 +65,26 @@ class Reader {
 
     BsdfTable read() {
         text("description");
+        read_format();
         read_bands();
         read_metadata();
         read_exits();
         read_incident();
+        read_solid_angle();
         if (has("grid_theta") || has("grid_phi") || has("grid_index"))
             read_grid();
         read_scattering();
         return std::move(table_);
+    }
+
+    /// Of the fields that have been read: of their names, types, shapes and bytes.
+    std::string checksum() const { return text_hash(digest_); }
+
+    /// After all else: what is wrong with one field is told of that field.
+    void check_checksum() {
+        const std::string expected = checksum(), found = text("checksum");
+        if (found != expected)
+            fail("checksum", expected + " of the other fields", found);
     }
 
   private:
@@ -68,14 +95,19 @@ class Reader {
 
     bool has(const std::string& name) const { return fields_.contains(name); }
 
-    const TensorField& field(const std::string& name, const std::string& expected) const {
+    /// Every field is read through here.
+    const TensorField& field(const std::string& name, const std::string& expected) {
         const auto found = fields_.find(name);
         if (found == fields_.end())
             fail(name, expected, "no such field");
+        const auto& [type, shape, bytes] = found->second;
+        digest_ +=
+            fmt::format("{} {} {}\n", name, describe(type, shape),
+                        text_hash({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
         return found->second;
     }
 
-    template <class T> std::vector<T> array(const std::string& name, const Shape& shape) const {
+    template <class T> std::vector<T> array(const std::string& name, const Shape& shape) {
         const std::string expected = describe(TypeOf<T>::value, shape);
         const TensorField& stored = field(name, expected);
         if (stored.type != TypeOf<T>::value || stored.shape != shape)
@@ -84,7 +116,7 @@ class Reader {
     }
 
     /// An array of one dimension whose length the file decides.
-    template <class T> std::vector<T> list(const std::string& name) const {
+    template <class T> std::vector<T> list(const std::string& name) {
         const std::string expected = "a non-empty list of " + describe(TypeOf<T>::value, {});
         const TensorField& stored = field(name, expected);
         if (stored.type != TypeOf<T>::value || stored.shape.size() != 1 || stored.shape[0] == 0)
@@ -92,26 +124,36 @@ class Reader {
         return stored.values<T>();
     }
 
-    std::string text(const std::string& name) const {
+    std::string text(const std::string& name) {
         const TensorField& stored = field(name, "text");
         if (stored.type != Type::u8 || stored.shape.size() != 1)
             fail(name, "text", describe(stored.type, stored.shape));
         return stored.text();
     }
 
-    nlohmann::json json(const std::string& name) const {
+    nlohmann::json json(const std::string& name) {
         auto value = nlohmann::json::parse(text(name), nullptr, false);
         if (value.is_discarded())
             fail(name, "JSON", "text that is none");
         return value;
     }
 
-    std::vector<std::string> names_in(const std::string& name) const {
+    std::vector<std::string> names_in(const std::string& name) {
         const nlohmann::json names = json(name);
         const auto is_string = [](const nlohmann::json& v) { return v.is_string(); };
         if (!names.is_array() || names.empty() || !std::ranges::all_of(names, is_string))
             fail(name, "a JSON array of names", names.type_name());
         return names.get<std::vector<std::string>>();
+    }
+
+    void read_format() {
+        const bool known = has("format");
+        const uint32_t format = known ? array<uint32_t>("format", {1})[0] : 0;
+        if (format != kFormat)
+            fail("format", std::to_string(kFormat),
+                 fmt::format("{}: measured by {} Rapport; measure it again",
+                             known ? std::to_string(format) : "no such field",
+                             format < kFormat ? "an older" : "a newer"));
     }
 
     void read_bands() {
@@ -199,6 +241,17 @@ class Reader {
         }
     }
 
+    /// The chart decides; the angles are there for others.
+    void read_solid_angle() {
+        const auto found =
+            array<float>("solid_angle", {table_.directions(), uint64_t(table_.exits.columns())});
+        const std::vector<float> expected = solid_angles(table_);
+        for (size_t i = 0; i < found.size(); ++i)
+            if (!(std::abs(found[i] - expected[i]) <= kAngleTolerance * expected[i]))
+                fail(fmt::format("solid_angle[{}]", i), fmt::format("{}", expected[i]),
+                     fmt::format("{}", found[i]));
+    }
+
     void check_axis(const std::string& name, const std::vector<double>& axis, double low,
                     double high) const {
         double previous = -HUGE_VAL;
@@ -217,6 +270,9 @@ class Reader {
         if (table_.grid_phi[0] != 0)
             fail("grid_phi[0]", "0", fmt::format("{}", table_.grid_phi[0]));
         const size_t thetas = table_.grid_theta.size(), phis = table_.grid_phi.size();
+        // All share one direction there: a small file would have nodes without bound.
+        if (table_.grid_theta.back() == 0 && phis > 1)
+            fail("grid_phi", "one φ where the only θ is 0", fmt::format("{}", phis));
         table_.grid_index = array<uint32_t>("grid_index", {2, thetas, phis});
         for (size_t i = 0; i < table_.grid_index.size(); ++i)
             check_grid_index(i, thetas * phis);
@@ -246,12 +302,12 @@ class Reader {
                              incident.theta, incident.phi));
     }
 
-    std::vector<float> shares(const std::string& name, const Shape& shape) const {
+    std::vector<float> shares(const std::string& name, const Shape& shape) {
         return finite(name, array<float>(name, shape));
     }
 
     /// In half or in single precision.
-    std::vector<float> intensities(const std::string& name, const Shape& shape) const {
+    std::vector<float> intensities(const std::string& name, const Shape& shape) {
         if (has(name) && fields_.at(name).type == Type::f32)
             return shares(name, shape);
         const auto halves = array<Imath::half>(name, shape);
@@ -310,6 +366,7 @@ class Reader {
 
     std::string path_;
     const TensorFile& fields_;
+    std::string digest_;
     BsdfTable table_;
 };
 
@@ -358,6 +415,7 @@ void write_table(const BsdfTable& table, const std::filesystem::path& path) {
     };
     TensorFile fields;
     fields["description"] = TensorField::text("Rapport cloth BSDF table");
+    fields["format"] = TensorField::of<uint32_t>({1}, {kFormat});
     fields["metadata"] = json_text(table.metadata);
     fields["band_names"] = json_text(table.bands.names);
     if (!table.bands.is_rgb())
@@ -369,6 +427,8 @@ void write_table(const BsdfTable& table, const std::filesystem::path& path) {
     fields["incident_side"] = TensorField::of<uint8_t>({directions}, side);
     fields["incident_theta"] = TensorField::of<double>({directions}, theta);
     fields["incident_phi"] = TensorField::of<double>({directions}, phi);
+    fields["solid_angle"] =
+        TensorField::of<float>({directions, uint64_t(mesh.columns())}, solid_angles(table));
     if (!table.partial()) {
         const uint64_t thetas = table.grid_theta.size(), phis = table.grid_phi.size();
         fields["grid_theta"] = TensorField::of<double>({thetas}, table.grid_theta);
@@ -385,13 +445,22 @@ void write_table(const BsdfTable& table, const std::filesystem::path& path) {
         fields["colourways"] = json_text(names);
     }
     fields["paths"] = TensorField::of<uint64_t>({directions}, table.paths);
-    Reader(path, fields).read();
+    Reader reader(path, fields);
+    reader.read();
+    fields["checksum"] = TensorField::text(reader.checksum());
     write_tensor_file(fields, path);
+}
+
+BsdfTable table_of(const TensorFile& fields, const std::filesystem::path& path) {
+    return Reader(path, fields).read();
 }
 
 BsdfTable read_table(const std::filesystem::path& path) {
     const TensorFile fields = read_tensor_file(path);
-    return Reader(path, fields).read();
+    Reader reader(path, fields);
+    BsdfTable table = reader.read();
+    reader.check_checksum();
+    return table;
 }
 
 } // namespace rapport

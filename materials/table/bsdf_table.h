@@ -2,6 +2,7 @@
 
 #include "materials/table/direction_mesh.h"
 #include "renderer/core/bands.h"
+#include "renderer/core/tensor_file.h"
 
 #include <array>
 #include <cstdint>
@@ -105,20 +106,26 @@ BsdfTable make_partial_table(const Bands& bands, std::vector<IncidentDirection> 
 /// allocation is made before a size is checked against the file's. Writing validates the same
 /// first: a table that could not be read back leaves no file, and what was there stays.
 ///
+/// `format` numbers the layout; files of another are refused. `checksum`, a text, is of all fields
+/// that are read, so that a flipped byte is refused.
 /// The arrays bear the names of the members above (`intensity`, `unscattered`, `absorbed`,
 /// `capped`, `lost`, `paths`, `accuracy`, `bin_error`, `realisation_error`, `grid_theta`,
 /// `grid_phi`, `grid_index`), and besides them stand
 /// `incident_side` (0 front, 1 back), `incident_theta`, `incident_phi`, the mesh of exits by
 /// the edges of its bins, `exit_u` and `exit_v` (direction_mesh.h), `exit_axis` of either side (0
-/// warp, 1 weft; exit_chart.h), `band_edges_nm` (absent for RGB), and as texts `band_names` (a JSON
-/// array), `metadata` (a JSON object) and `description`. `intensity` is in half precision, whose
-/// rounding is far below any noise, but for a number too large for it: then all are in single.
-/// Angles are in radians, as in the other tables of this container, so that they survive the round
-/// trip bit for bit. `grid_*` are absent from a partial table, `realisation_error` from one of a
-/// single realisation. Where there are colourways, `colourways` has their names (a JSON array), and
-/// the fields of the first are `colourway_0_intensity` and so on. Other fields are ignored.
+/// warp, 1 weft; exit_chart.h), `solid_angle` [D, columns] of each bin of a column [sr] (bin b is
+/// in column b / rows, and rows are equal), `band_edges_nm` (absent for RGB), and as texts
+/// `band_names` (a JSON array), `metadata` (a JSON object) and `description`. `intensity` is in
+/// half precision, whose rounding is far below any noise, but for a number too large for it: then
+/// all are in single. Angles are in radians, as in the other tables of this container, so that they
+/// survive the round trip bit for bit. `grid_*` are absent from a partial table,
+/// `realisation_error` from one of a single realisation. Where there are colourways, `colourways`
+/// has their names (a JSON array), and the fields of the first are `colourway_0_intensity` and so
+/// on. Other fields are ignored.
 void write_table(const BsdfTable& table, const std::filesystem::path& path);
 BsdfTable read_table(const std::filesystem::path& path);
+/// As `read_table`, of the fields of the file at `path`, but that the checksum is not asked.
+BsdfTable table_of(const TensorFile& fields, const std::filesystem::path& path);
 
 /// FileError for a colourway that `file` has not, told those that it has.
 [[noreturn]] void refuse_colourway(const std::string& name, const std::vector<std::string>& names,

@@ -32,6 +32,12 @@ Rgb to_rgb(const float* values, const std::vector<Rgb>& band_rgb) {
     return into_gamut(sum);
 }
 
+/// What each channel of a node is multiplied by, so that no more of it leaves than came in: a
+/// bright saturated spectrum can be brighter than white in a channel (1.14 in red, of all but
+/// 500–520 nm). To take that channel down alone is the nearest colour; to mix with grey would make
+/// a pale one of a bright orange, and to darken all channels would cost the others.
+Rgb within_one(const glm::dvec3& leaving) { return Rgb(1.0 / glm::max(leaving, 1.0)); }
+
 /// Partial sums of `shares` over their sum, filled up with infinity to whole lines; the sum.
 double accumulate_shares(std::span<const double> shares, Line* cumulative) {
     double total = 0, sum = 0;
@@ -116,10 +122,18 @@ void PackedTable::add_node(const BsdfTable& table, size_t side, size_t theta, si
         area[i] = (b.u_high - b.u_low) * (b.v_high - b.v_low);
         jacobian[i] = exits.solid_angle(i) / area[i];
     }
-    float largest = 0;
+    Rgb unscattered = to_rgb(&table.unscattered[direction * band_rgb.size()], band_rgb);
+    glm::dvec3 leaving(unscattered);
     for (size_t i = 0; i < means.size(); ++i) {
         means[i] =
             to_rgb(&table.intensity[(direction * means.size() + i) * band_rgb.size()], band_rgb);
+        leaving += glm::dvec3(means[i]) * exits.solid_angle(i % bins);
+    }
+    const Rgb within = within_one(leaving);
+    unscattered *= within;
+    float largest = 0;
+    for (size_t i = 0; i < means.size(); ++i) {
+        means[i] *= within;
         largest = std::max({largest, means[i].r * static_cast<float>(jacobian[i % bins]),
                             means[i].g * static_cast<float>(jacobian[i % bins]),
                             means[i].b * static_cast<float>(jacobian[i % bins])});
@@ -154,7 +168,7 @@ void PackedTable::add_node(const BsdfTable& table, size_t side, size_t theta, si
         (block == 0 ? reflected_ : transmitted_)[at] = share;
     }
     albedo_[at] = rgb0(Rgb(flux));
-    unscattered_[at] = rgb0(to_rgb(&table.unscattered[direction * band_rgb.size()], band_rgb));
+    unscattered_[at] = rgb0(unscattered);
 }
 
 // Looking up: hardly a branch, four numbers at a time.

@@ -20,6 +20,11 @@ void bsdf_seeds(const std::filesystem::path& folder) {
     write_table(table, folder / "table.bsdf");
     write_table(small_synthetic_table(dim, 0, Bands::from_edges({400, 700})),
                 folder / "spectral.bsdf");
+    BsdfTable normal = make_partial_table(Bands{}, {{Side::front, 0, 0}, {Side::back, 0, 0}});
+    normal.grid_theta = normal.grid_phi = {0};
+    normal.grid_index = {0, 1};
+    fill_table(normal, dim);
+    write_table(normal, folder / "normal.bsdf");
     write_measured(small_measured(), folder / "measured.bsdf");
     MeasuredFields isotropic = small_measured(1);
     isotropic.wavelengths = {400, 500, 600};

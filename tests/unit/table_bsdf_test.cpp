@@ -5,9 +5,25 @@
 #include "renderer/core/rng.h"
 #include "tests/support/synthetic_tables.h"
 
+#include <atomic>
+#include <cstdlib>
 #include <functional>
 #include <gtest/gtest.h>
+#include <new>
 #include <vector>
+
+namespace {
+std::atomic<size_t> allocations{0}; // in the whole program
+} // namespace
+// Out of line, or GCC sees that what came from `new` goes to `free`.
+[[gnu::noinline]] void* operator new(size_t size) {
+    ++allocations;
+    if (void* const memory = std::malloc(size))
+        return memory;
+    throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
 namespace rapport {
 namespace {
@@ -20,7 +36,7 @@ glm::vec3 direction(double theta_degrees, double phi_degrees, Side side = Side::
 }
 
 const TableBsdf& satin() {
-    static const TableBsdf bsdf(tests::synthetic_table(satin_intensity, 0.05), "satin.bsdf");
+    static const TableBsdf bsdf(tests::synthetic_table(satin_intensity, 0.04), "satin.bsdf");
     return bsdf;
 }
 
@@ -185,6 +201,51 @@ TEST(TableBsdf, AlbedoLiesBetweenThatOfTheNodesAround) {
     EXPECT_NEAR(bsdf.albedo(direction(40, 357)).g, 0.2f * last.g + 0.8f * first.g, 1e-5);
 }
 
+TEST(TableBsdf, NothingSpikesTowardsTheHorizon) {
+    // From the last but one θ of the table to the horizon, all φ: the brightest light is as bright
+    // as at one of the two nodes, albedo lies between theirs, and no light changes suddenly: in a
+    // quarter of a degree by a 1/32 of the way between the nodes, and as the highlight moves.
+    const TableBsdf& bsdf = satin();
+    const BsdfTable& table = bsdf.table();
+    const double low = degrees(table.grid_theta.end()[-2]), high = degrees(table.grid_theta.back());
+    for (const Side side : {Side::front, Side::back})
+        for (const double phi : {0.0, 7.0, 45.0, 90.0, 187.0, 262.0}) {
+            std::vector<glm::vec3> lights;
+            const ExitBins exits(table.exits, spherical_direction(radians(high), radians(phi)),
+                                 table.exit_axis[static_cast<size_t>(side)]);
+            for (size_t bin = 0; bin < table.exits.bins(); ++bin)
+                for (const double xi : {-0.9, 0.0, 0.9})
+                    for (const float up : {-1.0f, 1.0f}) {
+                        lights.emplace_back(exits.direction(bin, xi, 0.5 * xi));
+                        lights.back().z *= up;
+                    }
+            const auto seen = [&](double theta) {
+                std::vector<float> intensity;
+                for (const glm::vec3& light : lights)
+                    intensity.push_back(bsdf.eval(direction(theta, phi, side), light).r);
+                return intensity;
+            };
+            const auto albedo = [&](double theta) {
+                return bsdf.albedo(direction(theta, phi, side)).r;
+            };
+            std::vector<float> before = seen(low);
+            const float brightest =
+                std::max(std::ranges::max(before), std::ranges::max(seen(high)));
+            const auto [least, most] = std::minmax({albedo(low), albedo(high)});
+            for (int step = 1; step <= 40; ++step) {
+                const double theta = std::min(low + 0.25 * step, 89.99);
+                const std::vector<float> now = seen(theta);
+                for (size_t i = 0; i < now.size(); ++i) {
+                    ASSERT_LE(now[i], 1.02f * brightest) << theta << " " << phi;
+                    ASSERT_NEAR(now[i], before[i], 0.05f * brightest) << theta << " " << phi;
+                }
+                EXPECT_GE(albedo(theta), least - 1e-5f) << theta << " " << phi;
+                EXPECT_LE(albedo(theta), most + 1e-5f) << theta << " " << phi;
+                before = now;
+            }
+        }
+}
+
 TEST(TableBsdf, HighlightsMoveBetweenNodesInsteadOfDoubling) {
     // A narrow ridge on the cone of the warp, or on that of the weft. Half-way between nodes it
     // still stands where it should, as high as at a node; where a blend in place would leave its
@@ -253,6 +314,24 @@ TEST(TableBsdf, SampleEvalAndPdfAgree) {
         }
         EXPECT_LE(over_edges, 10);
     }
+}
+
+TEST(TableBsdf, LookingUpAllocatesNothing) {
+    const TableBsdf& bsdf = satin();
+    const std::vector<glm::vec3> all = eyes();
+    Rgb sum(0);
+    const size_t before = allocations;
+    for (const glm::vec3& eye : all)
+        for (const glm::vec3& light : all) {
+            sum += bsdf.eval(eye, light) + bsdf.pdf(eye, light);
+            sum += bsdf.eval_and_pdf(eye, light).intensity;
+            sum += bsdf.sample(eye, 0.3f, {0.4f, 0.6f})->weight;
+            sum += bsdf.albedo(eye) + bsdf.unscattered(eye);
+        }
+    const size_t after = allocations;
+    EXPECT_EQ(after, before);
+    EXPECT_GT(sum.r, 0);
+    EXPECT_GT(after, 0u); // they are counted
 }
 
 TEST(TableBsdf, EndsOfTheRandomNumbersAreSafe) {
@@ -372,6 +451,38 @@ TEST(TableBsdf, SpectralBandsBecomeColour) {
     EXPECT_GE(colour.r, 0);
     EXPECT_GT(colour.g, colour.r);
     EXPECT_NEAR(luminance(colour), luminance(expected), 1e-4);
+}
+
+TEST(TableBsdf, SaturatedSpectraMakeNoEnergy) {
+    // Magenta and orange are brighter than white in the red of linear sRGB. That channel alone is
+    // taken down to 1, together with what passes straight through; a colour within stays.
+    const Bands bands = Bands::from_edges({400, 500, 520, 700});
+    const auto leaving = [&](const Rgb& spectrum, const glm::vec3& eye) {
+        BsdfTable table = tests::small_synthetic_table(
+            [&](const IncidentDirection&, const glm::dvec3&, size_t band) {
+                return 0.75 * spectrum[static_cast<int>(band)] / (4 * kPi);
+            },
+            0, bands);
+        for (size_t i = 0; i < table.unscattered.size(); ++i)
+            table.unscattered[i] = 0.25f * spectrum[static_cast<int>(i % 3)];
+        const TableBsdf bsdf(std::move(table), "");
+        return bsdf.albedo(eye) + bsdf.unscattered(eye);
+    };
+    const auto linear = [&](const Rgb& spectrum) {
+        const std::vector<Rgb> rgb = bands.to_rgb();
+        return glm::mat3(rgb[0], rgb[1], rgb[2]) * spectrum;
+    };
+    const Rgb magenta(0.98f, 0, 0.98f), dim = 0.5f * magenta, orange(0, 0, 0.98f);
+    ASSERT_GT(linear(magenta).r, 1.1f);
+    for (const glm::vec3& eye : eyes()) {
+        const Rgb bright = leaving(magenta, eye), within = leaving(dim, eye);
+        for (int channel = 0; channel < 3; ++channel) {
+            EXPECT_NEAR(bright[channel], std::min(linear(magenta)[channel], 1.0f), 1e-4);
+            EXPECT_NEAR(within[channel], linear(dim)[channel], 1e-4);
+        }
+        EXPECT_NEAR(leaving(orange, eye).r, 1, 1e-4);
+        EXPECT_GT(leaving(orange, eye).g, 0.75f);
+    }
 }
 
 TEST(TableBsdf, RefusesTablesWithGaps) {
