@@ -1,5 +1,6 @@
 #include "renderer/app/measuring_line.h"
 #include "renderer/app/scene_options.h"
+#include "renderer/core/atomic_file.h"
 #include "renderer/core/input_file.h"
 #include "renderer/core/progress.h"
 #include "renderer/integrator/path_tracer.h"
@@ -52,6 +53,7 @@ std::vector<std::filesystem::path> outputs(const RenderOptions& options,
         if (lower_extension(path) != ".exr" && lower_extension(path) != ".png")
             throw FileError(path.string(), "", "an output that ends in .exr or .png",
                             "another ending");
+    std::ranges::for_each(paths, check_writable);
     return paths;
 }
 

@@ -3,6 +3,7 @@
 #include "renderer/integrator/folded_bsdf.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace rapport {
@@ -115,7 +116,9 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
         const Candidate candidate = light_candidate(*choice, count, point, frame, bsdf, chance,
                                                     glm::fract(shift + number * step));
         const float weight = mean(candidate.added);
-        if (!(weight > 0))
+        if (!std::isfinite(weight)) // to be seen, not to be picked or not
+            return candidate.added;
+        if (weight == 0)
             continue;
         total += weight;
         const float share = weight / total; // one number picks: what is left of it is even again

@@ -145,7 +145,7 @@ TEST_F(Mitsuba, RendersTheExportAsWeRenderTheCloth) {
     const std::string measured = "\"measured\" \"string filename\" \"measured.bsdf\"";
     const double same_file = rms_difference({by_us(measured, 3), by_us(measured, 4)}, theirs);
     std::printf("the same file here and in Mitsuba: RMS %.4f\n", same_file);
-    EXPECT_LT(same_file, 0.005);
+    EXPECT_LT(same_file, tests::long_run() ? 0.005 : 0.015); // 0.01 of noise in the short form
 }
 
 } // namespace

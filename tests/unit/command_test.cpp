@@ -65,6 +65,8 @@ TEST_F(Command, RefusesAWrongCommandLine) {
     expect_refused({"render", "scene.txt"}, {"scene.txt", ".pbrt"});
     expect_refused({"render", kSource + "/scenes/quickstart.pbrt", "--size", "0x10"}, {"--size"});
     expect_refused({"render", kSource + "/scenes/quickstart.pbrt", "-o", "a.jpg"}, {"a.jpg"});
+    expect_refused({"render", kSource + "/scenes/quickstart.pbrt", "-o", "none/a.exr"},
+                   {"none/a.exr"}); // before the scene is built, which lacks its table here
     expect_refused({"info", "what.xyz"}, {"what.xyz"});
 }
 

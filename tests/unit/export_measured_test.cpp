@@ -152,7 +152,7 @@ TEST(ExportMeasured, SpectraOfAnRgbTableHaveItsColours) {
 TEST(ExportMeasured, SpectralTablesKeepTheirBands) {
     const BsdfTable spectral = tests::small_synthetic_table(
         [](const IncidentDirection&, const glm::dvec3& out, size_t band) {
-            return 0.05 * double(band + 1) * std::abs(out.z);
+            return 0.03 * double(band + 1) * std::abs(out.z);
         },
         0, Bands::from_edges({400, 450, 500, 600, 700}));
     const MeasuredFields fields = measured_fields(spectral, "", MeasuredColours::spectra);

@@ -33,7 +33,7 @@ Scene lamp_scene(const RenderSettings& settings, const glm::ivec2& resolution = 
 RenderSettings to_samples() { return tests::settings(70, 3, Sampler::Kind::sobol, 4); }
 RenderSettings to_error() {
     RenderSettings settings = to_samples();
-    settings.error = 0.01;
+    settings.error = 0.006;
     return settings;
 }
 

@@ -17,6 +17,7 @@ import numpy
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
 plt.rcParams.update({"svg.hashsalt": "rapport", "svg.fonttype": "none", "font.size": 9})
 LABELS = {"table": "the table", "lobes": "GGX and diffuse, fitted"}
@@ -43,6 +44,9 @@ def main():
         print(f"{cloth} under {sky}: variance × time of the lobes over the table's {ratio.mean():.2f} ± {error:.2f}")
         axes.set(title=f"{cloth} under {sky}: × {ratio.mean():.1f}", xlabel="seconds of processor time",
                  ylabel="variance of a pixel over the mean²")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 3)))
+        axes.xaxis.set_major_formatter(ScalarFormatter())
+        axes.xaxis.set_minor_formatter(NullFormatter())
         axes.grid(alpha=0.3)
         axes.legend(frameon=False)
     figure.savefig(pathlib.Path(__file__).with_name("sampling.svg"), metadata={"Date": None})
