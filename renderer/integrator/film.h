@@ -47,7 +47,7 @@ class Film {
     /// Radiance of a tile, and the variance of its pixels' means, both in the mean over pixels and
     /// channels. The variance is that between the means of the samples of even and of odd number,
     /// which are independent whatever the sampler (core/sampler.h), so that it tells what Sobol
-    /// points gain; good to 6 % where the 768 values of a tile are alike. No variance from fewer
+    /// points gain; good to 5 % where the 768 values of a tile are alike. No variance from fewer
     /// than two samples: infinite.
     struct Noise {
         double mean = 0, variance = 0;

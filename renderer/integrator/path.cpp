@@ -11,8 +11,9 @@ namespace {
 
 constexpr int kRouletteDepth = 3; ///< scattering events before Russian roulette
 /// Directions of lights that one is picked from at a vertex. Seconds × variance of the dress in
-/// satin and plain weave under two photographed skies (tests/bench/sampling_bench.cpp), in the
-/// geometric mean, is 0.77, 0.70, 0.67 and 0.71 of that of one direction, for 2, 3, 4 and 6.
+/// satin and plain weave under two photographed skies (tests/bench/sampling_bench.cpp, with this
+/// number changed), in the geometric mean, is 0.77, 0.70, 0.67 and 0.71 of that of one direction,
+/// for 2, 3, 4 and 6.
 constexpr int kCandidates = 4;
 
 float mean(const Rgb& c) { return (c.r + c.g + c.b) * (1 / 3.0f); }

@@ -101,7 +101,7 @@ class Mitsuba : public testing::Test {
         return read_exr(out);
     }
 
-    static int samples() { return tests::long_run() ? 4096 : 256; }
+    static int samples() { return tests::long_run() ? 4096 : 1024; }
 
     /// RMS difference of the expectations of two pictures over the mean of the first, each rendered
     /// twice: the product of two independent differences has no noise in its mean.
@@ -145,7 +145,7 @@ TEST_F(Mitsuba, RendersTheExportAsWeRenderTheCloth) {
     const std::string measured = "\"measured\" \"string filename\" \"measured.bsdf\"";
     const double same_file = rms_difference({by_us(measured, 3), by_us(measured, 4)}, theirs);
     std::printf("the same file here and in Mitsuba: RMS %.4f\n", same_file);
-    EXPECT_LT(same_file, tests::long_run() ? 0.005 : 0.015); // 0.01 of noise in the short form
+    EXPECT_LT(same_file, 0.005);
 }
 
 } // namespace

@@ -28,7 +28,7 @@ size_t cell_of(const glm::vec3& w) {
 
 /// Expected counts of `samples` draws, by a midpoint rule within each cell.
 std::vector<double> expected_counts(const Density& density, int samples) {
-    constexpr int kSteps = 48;
+    constexpr int kSteps = 96;
     std::vector<double> expected(kRows * kColumns);
     const double share = 4 * kPi / (kRows * kColumns * square(kSteps));
     for (int i = 0; i < kRows * kSteps; ++i)
@@ -76,7 +76,7 @@ std::filesystem::path test_image(const tests::TemporaryFolder& folder, int width
             for (size_t c = 0; c < 3; ++c)
                 image.data[c][static_cast<size_t>(y * width + x)] =
                     x < width / 3 ? 0
-                                  : (x == width / 2 && y == height / 3 ? 4.0f : 0.3f) +
+                                  : (x == width / 2 && y == height / 3 ? 40.0f : 0.3f) +
                                         static_cast<float>(y) / static_cast<float>(height);
     const std::filesystem::path path = folder / ("sky" + std::to_string(width) + ".exr");
     write_exr(image, path);

@@ -5,25 +5,9 @@
 #include "renderer/core/rng.h"
 #include "tests/support/synthetic_tables.h"
 
-#include <atomic>
-#include <cstdlib>
 #include <functional>
 #include <gtest/gtest.h>
-#include <new>
 #include <vector>
-
-namespace {
-std::atomic<size_t> allocations{0}; // in the whole program
-} // namespace
-// Out of line, or GCC sees that what came from `new` goes to `free`.
-[[gnu::noinline]] void* operator new(size_t size) {
-    ++allocations;
-    if (void* const memory = std::malloc(size))
-        return memory;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
 namespace rapport {
 namespace {
@@ -314,24 +298,6 @@ TEST(TableBsdf, SampleEvalAndPdfAgree) {
         }
         EXPECT_LE(over_edges, 10);
     }
-}
-
-TEST(TableBsdf, LookingUpAllocatesNothing) {
-    const TableBsdf& bsdf = satin();
-    const std::vector<glm::vec3> all = eyes();
-    Rgb sum(0);
-    const size_t before = allocations;
-    for (const glm::vec3& eye : all)
-        for (const glm::vec3& light : all) {
-            sum += bsdf.eval(eye, light) + bsdf.pdf(eye, light);
-            sum += bsdf.eval_and_pdf(eye, light).intensity;
-            sum += bsdf.sample(eye, 0.3f, {0.4f, 0.6f})->weight;
-            sum += bsdf.albedo(eye) + bsdf.unscattered(eye);
-        }
-    const size_t after = allocations;
-    EXPECT_EQ(after, before);
-    EXPECT_GT(sum.r, 0);
-    EXPECT_GT(after, 0u); // they are counted
 }
 
 TEST(TableBsdf, EndsOfTheRandomNumbersAreSafe) {

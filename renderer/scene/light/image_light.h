@@ -23,7 +23,7 @@ class ImageLight final : public Light {
     std::optional<LightSample> sample(const glm::vec3& from, const glm::vec2& u) const override;
     Rgb escaped(const glm::vec3& direction) const override;
     float escaped_pdf(const glm::vec3& direction) const override;
-    float power() const override;
+    float power() const override; ///< of what is above the mean, for which it is sampled
 
   private:
     // The map between directions in the light's own space and the image, [0, 1]² from its top left.
