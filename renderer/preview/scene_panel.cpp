@@ -62,7 +62,7 @@ std::string table_line(const ClothDocument& document) {
     if (!document.table)
         return document.waiting ? "being measured …" : "";
     return fmt::format("ε {:.3f}{}", document.table->accuracy,
-                       document.waiting ? ", the new one is being measured …" : "");
+                       document.waiting ? ", measuring anew …" : "");
 }
 
 void draw_garment(Session& session, std::filesystem::path& selected) {
@@ -78,8 +78,8 @@ void draw_garment(Session& session, std::filesystem::path& selected) {
             const ClothDocument* document = document_of(session, choice.file);
             changed |= pick_colourway(document, choice.colourway);
             changed |= ImGui::SliderFloat("rotation", &choice.rotation, -90, 90, "%.0f°");
-            if (document)
-                wrapped(kGrey, table_line(*document));
+            if (document) // a line whether told or not, and one only: the controls below stay
+                ImGui::TextColored(kGrey, "%s", table_line(*document).c_str());
             if (document && document->cloth && choice.file != selected &&
                 ImGui::SmallButton("edit this cloth"))
                 selected = choice.file;
@@ -123,6 +123,7 @@ void draw_display(Tone& tone) {
     pick("show", tone.layer, kLayerNames);
 }
 
+/// Below all controls, for its lines come and go.
 void draw_progress(const Session& session) {
     if (const std::shared_ptr<const TracedPicture> picture = session.picture()) {
         text(fmt::format("{} × {}, {} sample{}", picture->image.width, picture->image.height,
@@ -174,10 +175,11 @@ void draw_scene_panel(Session& session, std::filesystem::path& selected) {
     if (section("Display"))
         draw_display(session.tone);
     if (section("Picture")) {
-        draw_progress(session);
+        wrapped(kGrey,
+                "drag: turn   right drag: move   wheel: nearer\ndouble click: look at   F: all");
         draw_files(session);
+        draw_progress(session);
     }
-    wrapped(kGrey, "drag: turn   right drag: move   wheel: nearer\ndouble click: look at   F: all");
     draw_messages(session, selected);
     ImGui::PopItemWidth();
 }
