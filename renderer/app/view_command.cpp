@@ -28,6 +28,13 @@ void run(const ViewOptions& options, const CommonOptions& common) {
         });
     line.end();
     view(session, size, {options.frames, options.screenshot});
+    if (!session.edited())
+        return;
+    const size_t told = session.notes().size();
+    session.rescue("closed with edits that had not been saved");
+    if (!common.quiet)
+        for (size_t i = told; i < session.notes().size(); ++i)
+            fmt::print(stderr, "{}\n", session.notes()[i]);
 }
 
 } // namespace

@@ -43,6 +43,9 @@ InputLog::~InputLog() { innermost_log = outer_; }
 
 InputFile open_input(const std::filesystem::path& path) {
     std::error_code error;
+    const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, error);
+    for (InputLog* log = innermost_log; log; log = log->outer_)
+        log->files_.insert(error ? path : canonical);
     const auto status = std::filesystem::status(path, error);
     if (status.type() == std::filesystem::file_type::not_found)
         throw FileError(path.string(), "", "a file", "no such file");
@@ -60,8 +63,11 @@ InputFile open_input(const std::filesystem::path& path) {
     file.size = std::filesystem::file_size(path, error);
     if (error)
         throw FileError(path.string(), "", "a readable file", error.message());
-    if (innermost_log)
-        innermost_log->hashes_[path.filename().string()] += hash_of(file.stream) + ' ';
+    if (innermost_log) {
+        const std::string hash = hash_of(file.stream) + ' ';
+        for (InputLog* log = innermost_log; log; log = log->outer_)
+            log->hashes_[path.filename().string()] += hash;
+    }
     return file;
 }
 

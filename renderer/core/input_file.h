@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <string>
 
 namespace rapport {
@@ -14,9 +15,8 @@ struct InputFile {
     uint64_t size = 0;
 };
 
-/// What this thread opens with `open_input` as long as the log lives, the innermost if there are
-/// several: by the names of the files without their folders, hashes of their bytes in the order of
-/// opening. Tells work on some files from work on others, wherever they lie.
+/// What this thread opens with `open_input` as long as the log lives; there may be several, one
+/// within another.
 class InputLog {
   public:
     InputLog();
@@ -24,12 +24,17 @@ class InputLog {
     InputLog& operator=(const InputLog&) = delete;
     ~InputLog();
 
+    /// By the names of the files without their folders, hashes of their bytes in the order of
+    /// opening. Tells work on some files from work on others, wherever they lie.
     const std::map<std::string, std::string>& hashes() const { return hashes_; }
+    /// Canonical paths, also of files that were not there.
+    const std::set<std::filesystem::path>& files() const { return files_; }
 
   private:
     friend InputFile open_input(const std::filesystem::path& path);
 
     std::map<std::string, std::string> hashes_;
+    std::set<std::filesystem::path> files_;
     InputLog* outer_;
 };
 

@@ -46,16 +46,18 @@ ClothTable ready(const RisingMeasurement& measurement, const std::filesystem::pa
 ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch,
                        const StopSignal& stopped) {
     const auto asked = std::chrono::steady_clock::now();
-    const auto timed = [&](ClothTable table) {
-        table.seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
-        return table;
-    };
-    if (is_stored(file))
-        return timed(ready(read_table(file), nullptr, file.string(), stopped));
-    RisingMeasurement measurement(read(file));
-    measurement.advance(stopped, watch);
-    return timed(ready(measurement, file, stopped));
+    const InputLog log;
+    ClothTable made;
+    if (is_stored(file)) {
+        made = ready(read_table(file), nullptr, file.string(), stopped);
+    } else {
+        RisingMeasurement measurement(read(file));
+        measurement.advance(stopped, watch);
+        made = ready(measurement, file, stopped);
+    }
+    made.inputs = log.files();
+    made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
+    return made;
 }
 
 ClothWorker::ClothWorker() : thread_([this] { run(); }) {}
@@ -142,11 +144,12 @@ void ClothWorker::run() {
             stop_current_ = false;
         }
         bool more = true;
+        const InputLog log;
         try {
             more = advance(*task, [this] { return stop_current_.load(); });
         } catch (const Stopped&) { // a newer task may come first
         } catch (const std::exception& error) {
-            tell({task->file, task->request, nullptr, error.what()});
+            tell({task->file, task->request, nullptr, error.what(), log.files()});
             more = false;
         }
         const std::scoped_lock lock(mutex_);
@@ -159,21 +162,30 @@ void ClothWorker::run() {
 bool ClothWorker::advance(Task& task, const StopSignal& stopped) {
     const auto tell_of = [&](ClothTable table) {
         table.seconds = std::chrono::duration<double>(Clock::now() - task.asked).count();
-        tell({task.file, task.request, std::make_shared<const ClothTable>(std::move(table)), {}});
+        tell({task.file,
+              task.request,
+              std::make_shared<const ClothTable>(std::move(table)),
+              {},
+              {}});
     };
     if (!task.cloth && is_stored(task.file)) {
         tell_of(first_table(task.file, {}, stopped));
         return false;
     }
-    if (!task.measurement)
+    if (!task.measurement) {
+        const InputLog log;
         task.measurement.emplace(task.cloth ? task.cloth : read(task.file));
+        task.inputs = log.files();
+    }
     RisingMeasurement& measurement = *task.measurement;
     measurement.advance(stopped);
     const bool done = measurement.table().largest_accuracy() <= kFinestAccuracy ||
                       measurement.paths() >= kMostPaths;
     if (done || measurement.paths() >= 2 * task.told_paths) {
         task.told_paths = measurement.paths();
-        tell_of(ready(measurement, task.file, stopped));
+        ClothTable table = ready(measurement, task.file, stopped);
+        table.inputs = task.inputs;
+        tell_of(std::move(table));
     }
     return !done;
 }

@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
 
 namespace rapport {
@@ -19,6 +20,7 @@ struct ClothTable {
     std::shared_ptr<const BsdfTable> table; ///< of all colourways
     std::map<std::string, std::shared_ptr<const TableBsdf>> dyed; ///< by colourway; "" = its own
     std::shared_ptr<const FibreSwatch> swatch; ///< its fibres; nothing for a stored table
+    std::set<std::filesystem::path> inputs;    ///< the files that it was read from, if any
     double accuracy = 0;                       ///< ε
     double seconds = 0;                        ///< since it was asked for
 };
@@ -48,6 +50,7 @@ class ClothWorker {
         uint64_t request = 0;
         std::shared_ptr<const ClothTable> table; ///< or
         std::string error;                       ///< why there is none
+        std::set<std::filesystem::path> inputs;  ///< with an error: the files that were read
     };
     /// What there is since the last call.
     std::vector<News> take_news();
@@ -62,6 +65,7 @@ class ClothWorker {
         uint64_t request = 0;
         std::filesystem::path file;
         std::shared_ptr<const Cloth> cloth;
+        std::set<std::filesystem::path> inputs;
         Clock::time_point asked;
         std::optional<RisingMeasurement> measurement;
         uint64_t told_paths = 0; ///< of the table that was told last

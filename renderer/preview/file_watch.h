@@ -13,6 +13,12 @@ class FileWatch {
     /// Looks at the file from now on, or, if it does already, forgets what changed until now.
     void add(const std::filesystem::path& file) { seen_[file] = state_of(file); }
 
+    /// Looks at the file from now on, if it does not already.
+    void keep(const std::filesystem::path& file) {
+        if (!seen_.contains(file))
+            add(file);
+    }
+
     /// Those that have changed since they were last told or added; looks at most four times a
     /// second. A file that is gone has not changed: editors replace files by renaming.
     std::vector<std::filesystem::path> changed() {

@@ -46,13 +46,37 @@ void write_cloth(const Cloth& cloth, const std::filesystem::path& file) {
 } // namespace
 
 Session::Session(SceneSource source, const LoadingWatch& watch) : source_(std::move(source)) {
-    take(load_scene(source_, {}, watch));
-    watch_.add(source_.path);
+    take(load(source_, {}, watch, {}));
 }
 
 Session::~Session() { stop_reload_ = true; }
 
-void Session::take(LoadedScene loaded) {
+Session::Reload Session::load(const SceneSource& source, const ClothTables& known,
+                              const LoadingWatch& watch, const StopSignal& stopped) {
+    Reload reload;
+    const InputLog log;
+    try {
+        reload.loaded = load_scene(source, known, watch, stopped);
+    } catch (...) {
+        reload.failure = std::current_exception();
+    }
+    reload.inputs = log.files();
+    for (const auto& [file, table] :
+         reload.loaded.tables) // a cloth's own are no business of the scene
+        for (const std::filesystem::path& input : table->inputs)
+            reload.inputs.erase(input);
+    return reload;
+}
+
+void Session::take(Reload reload) {
+    for (const std::filesystem::path& file : reload.inputs)
+        watch_.keep(file);
+    if (reload.failure) { // perhaps not all were read: those of before may mend it, too
+        scene_inputs_.merge(reload.inputs);
+        std::rethrow_exception(reload.failure);
+    }
+    scene_inputs_ = std::move(reload.inputs);
+    const LoadedScene& loaded = reload.loaded;
     base_ = worn_ = loaded.scene;
     subject_ = subject_of(*base_);
     if (!camera_)
@@ -68,7 +92,7 @@ void Session::take(LoadedScene loaded) {
             ClothDocument& document = documents_[file];
             document.table = table;
             document.cloth = table->cloth;
-            watch_.add(file);
+            read_from(document, table->inputs);
         }
     for (const auto& [name, choice] : choices_)
         open(choice.file);
@@ -135,7 +159,7 @@ void Session::open(const std::filesystem::path& file) {
     ClothDocument& document = documents_[file];
     if (!document.table && !document.waiting) {
         ask(file, nullptr);
-        watch_.add(file);
+        watch_.keep(file);
     } else if (document.cloth && document.request == 0) {
         ask(file, document.cloth);
         document.waiting = false; // it has a table, in haste
@@ -208,11 +232,17 @@ std::filesystem::path Session::save_cloth(const std::filesystem::path& file,
         watch_.add(saved);
         notes_.push_back("saved " + saved.string());
         document.edited = false;
+        document.inputs = {saved}; // with its draft in it
         next = saved;
         if (saved != file)
             go_on_with(saved, file);
     });
     return next;
+}
+
+bool Session::edited() const {
+    return std::ranges::any_of(documents_,
+                               [](const auto& document) { return document.second.edited; });
 }
 
 void Session::rescue(const std::string& why) {
@@ -289,24 +319,32 @@ void Session::save_camera() {
 std::string Session::error() const { return scene_error_.empty() ? tracer_.error() : scene_error_; }
 
 void Session::look_at_files() {
-    for (const std::filesystem::path& file : watch_.changed()) {
-        if (file != source_.path) {
-            if (const auto found = documents_.find(file); found != documents_.end()) {
-                ClothDocument& document = found->second;
-                if (document.edited) {
-                    notes_.push_back(file.filename().string() +
-                                     " changed on the disk and takes the place of the edits");
-                    rescue(file, *document.cloth);
-                }
-                document.edited = false;
-                ask(file, nullptr);
-            }
-        } else {
+    for (const std::filesystem::path& changed : watch_.changed()) {
+        if (scene_inputs_.contains(changed))
             scene_changed_ = stop_reload_ = true; // one that goes on reads what was there before
-        }
+        for (const auto& [file, document] : documents_)
+            if (file == changed || document.inputs.contains(changed))
+                reread(file, changed);
     }
     if (scene_changed_ && !reload_.valid())
         start_reload();
+}
+
+void Session::reread(const std::filesystem::path& file, const std::filesystem::path& changed) {
+    ClothDocument& document = documents_.at(file);
+    if (document.edited) {
+        notes_.push_back(changed.filename().string() +
+                         " changed on the disk and takes the place of the edits");
+        rescue(file, *document.cloth);
+    }
+    document.edited = false;
+    ask(file, nullptr);
+}
+
+void Session::read_from(ClothDocument& document, const std::set<std::filesystem::path>& inputs) {
+    document.inputs = inputs;
+    for (const std::filesystem::path& file : inputs)
+        watch_.keep(file);
 }
 
 void Session::start_reload() {
@@ -316,7 +354,7 @@ void Session::start_reload() {
             known[cloth] = document.table;
     scene_changed_ = stop_reload_ = false;
     reload_ = std::async(std::launch::async, [this, source = source_, known = std::move(known)] {
-        return load_scene(source, known, {}, [this] { return stop_reload_.load(); });
+        return load(source, known, {}, [this] { return stop_reload_.load(); });
     });
 }
 
@@ -341,6 +379,8 @@ void Session::take_news() {
         ClothDocument& document = found->second;
         document.waiting = false;
         document.error = news.error;
+        if (const auto& inputs = news.table ? news.table->inputs : news.inputs; !inputs.empty())
+            read_from(document, inputs);
         if (!news.table)
             continue;
         document.table = news.table;

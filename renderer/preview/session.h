@@ -15,6 +15,7 @@ namespace rapport {
 struct ClothDocument {
     std::shared_ptr<const Cloth> cloth;      ///< as edited; nothing for a stored table
     std::shared_ptr<const ClothTable> table; ///< the latest; of an older edition while waiting
+    std::set<std::filesystem::path> inputs;  ///< the files that it was read from
     std::string error;                       ///< why there is none of this edition, or empty
     bool edited = false;                     ///< other than the file
     bool waiting = false;                    ///< for the first table of this edition
@@ -55,8 +56,8 @@ class Session {
     /// A copy of the scene file, seen from where the camera is, beside it; `notes` tells of it.
     void save_camera();
 
-    /// Writes all edited cloths into the working folder, named after their files; `notes` tells of
-    /// it and of `why`.
+    /// Writes all edited cloths, if any, into the working folder, named after their files; `notes`
+    /// tells of it and of `why`.
     void rescue(const std::string& why);
 
     /// Takes in what the background has finished and what changed on the disk; once a frame.
@@ -68,6 +69,7 @@ class Session {
     const Camera& camera() const { return camera_->camera(); }
     const Scene& scene() const { return *base_; }
     const ClothChoices& choices() const { return choices_; }
+    bool edited() const; ///< whether there are cloths other than their files
     bool worn(const std::filesystem::path& file) const;
     const std::set<std::string>& wearers() const { return wearers_; }
     const LightSettings& lights() const { return lights_; }
@@ -85,17 +87,28 @@ class Session {
     const ClothWorker& worker() const { return worker_; }
 
   private:
+    struct Reload {
+        LoadedScene loaded;
+        std::set<std::filesystem::path> inputs;
+        std::exception_ptr failure; ///< or nothing
+    };
+    static Reload load(const SceneSource& source, const ClothTables& known,
+                       const LoadingWatch& watch, const StopSignal& stopped);
+
     /// Writes a cloth as edited into the working folder, under a name of its own.
     void rescue(const std::filesystem::path& file, const Cloth& cloth);
     /// Runs what writes files; what goes wrong becomes a note.
     void attempt(const std::function<void()>& action);
     void go_on_with(const std::filesystem::path& target, const std::filesystem::path& file);
-    void take(LoadedScene loaded);
+    void take(Reload reload); ///< throws its failure
     /// Has the cloth measured, unless it is already.
     void open(const std::filesystem::path& file);
     void ask(const std::filesystem::path& file, std::shared_ptr<const Cloth> cloth);
     void take_news();
     void look_at_files();
+    /// Has the cloth read again, for `changed`, one of its files, is another now.
+    void reread(const std::filesystem::path& file, const std::filesystem::path& changed);
+    void read_from(ClothDocument& document, const std::set<std::filesystem::path>& inputs);
     void start_reload();
     void finish_reload();
     void fill_shelf();
@@ -115,13 +128,14 @@ class Session {
     std::map<std::filesystem::path, ClothDocument> documents_;
     std::vector<std::filesystem::path> shelf_;
     FileWatch watch_;
+    std::set<std::filesystem::path> scene_inputs_; ///< the files that the scene was read from
     std::string scene_error_;
     std::vector<std::string> notes_;
     bool stale_ = true;          ///< the picture is of another view
     bool redress_ = false;       ///< and of other cloths or lights
     bool scene_changed_ = false; ///< on the disk, since it was last loaded
     std::atomic<bool> stop_reload_ = false;
-    std::future<LoadedScene> reload_;
+    std::future<Reload> reload_;
     std::future<std::string> saving_;
     ClothWorker worker_;
     Tracer tracer_;

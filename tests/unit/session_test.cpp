@@ -238,6 +238,43 @@ TEST(Session, KeepsTheOldSceneUntilABrokenOneIsMended) {
     EXPECT_GT(difference(next_picture(session, 4)->image, before), 0.05);
 }
 
+TEST(Session, WhatASceneOrAClothIncludesIsReadAgainWhenItChanges) {
+    const SquareScene files(SquareScene::Worn::stored);
+    const std::string text = tests::read_bytes(files.scene());
+    tests::write_bytes(files.scene(), text + "Include \"more.pbrt\"\n");
+    tests::write_bytes(files / "more.pbrt", "Shape \"sphere\"\n");
+    Session session({files.scene()});
+    EXPECT_EQ(session.scene().surfaces().size(), 3u);
+    tests::write_bytes(files / "more.pbrt", "Include \"yet.pbrt\"\n");
+    tick_until(session, [&] { return !session.error().empty(); });
+    EXPECT_NE(session.error().find("yet.pbrt"), std::string::npos) << session.error();
+    tests::write_bytes(files / "yet.pbrt", "Shape \"sphere\"\nShape \"sphere\"\n");
+    tick_until(session, [&] { return session.scene().surfaces().size() == 4; });
+    EXPECT_EQ(session.error(), "");
+
+    const auto write_draft = [&](const std::string& tieup) {
+        tests::write_bytes(files / "draft.wif",
+                           "[WIF]\nVersion=1.1\n[WEAVING]\nShafts=2\nTreadles=2\nRising Shed=yes\n"
+                           "[WARP]\nThreads=2\n[WEFT]\nThreads=2\n[THREADING]\n1=1\n2=2\n"
+                           "[TREADLING]\n1=1\n2=2\n[TIEUP]\n" +
+                               tieup);
+    };
+    write_draft("1=1\n2=2\n");
+    std::string cloth = tests::coarse_cloth("0.3");
+    const std::string weave = "weave = \"plain\"";
+    cloth.replace(cloth.find(weave), weave.size(), "draft = \"draft.wif\"");
+    const std::filesystem::path file = std::filesystem::weakly_canonical(files / "drafted.toml");
+    tests::write_bytes(file, cloth);
+    session.choose_cloth("Body", {file, "", 0});
+    const auto document = [&] { return session.documents().at(file); };
+    tick_until(session, [&] { return document().cloth != nullptr; });
+    const bool first_up = document().cloth->draft.up(0, 0);
+    write_draft("1=2\n2=1\n\n");
+    tick_until(session, [&] { return document().cloth->draft.up(0, 0) != first_up; });
+    EXPECT_EQ(session.scene().surfaces().size(), 4u); // its own business, not the scene's
+    EXPECT_FALSE(session.reloading());
+}
+
 /// Lets the scene name a cloth that takes long to measure.
 std::string slowly_loaded(const SquareScene& files) {
     std::string cloth = tests::coarse_cloth("0.3");

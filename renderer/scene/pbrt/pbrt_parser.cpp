@@ -1,5 +1,7 @@
 #include "renderer/scene/pbrt/pbrt_parser.h"
 
+#include "renderer/core/error.h"
+#include "renderer/core/input_file.h"
 #include "renderer/scene/look_at.h"
 #include "renderer/scene/pbrt/pbrt_lexer.h"
 #include "renderer/scene/pbrt/pbrt_options.h"
@@ -193,8 +195,11 @@ class Parser {
                                 "a deeper Include");
         const PbrtToken name = read_token("a file name in quotes");
         const std::filesystem::path file = scene_.path.parent_path() / name.text;
-        if (std::error_code error; !std::filesystem::is_regular_file(file, error))
+        try {
+            open_input(file); // logged as an input though it be missing
+        } catch (const FileError&) {
             throw lexer_->error(name, "the name of a file");
+        }
         parse_file(file);
         --include_depth_;
     }
