@@ -3,12 +3,15 @@
 #include "renderer/core/error.h"
 #include "renderer/scene/imagemap.h"
 #include "renderer/scene/mesh/mesh_operations.h"
+#include "renderer/scene/mesh/triangles_inside.h"
+#include "renderer/scene/shape/fibre_swatch.h"
 #include "renderer/scene/shape/shape.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <set>
 #include <stdexcept>
 
@@ -80,6 +83,7 @@ class Builder {
             add_shape(shape, surfaces);
         check_overrides_are_worn();
         check_fibres_are_lit(surfaces, lights);
+        check_fibres_are_alone(surfaces);
         check_unused();
         return Scene(std::move(surfaces), std::move(lights), description_.camera,
                      description_.settings);
@@ -123,8 +127,10 @@ class Builder {
             transform(part.mesh, shape.to_world);
             if (has_far_positions(part.mesh))
                 shape.params.fail("", "positions below 1e18 m", "larger ones");
-            if (part.fibres)
+            if (part.fibres) {
                 place_fibres(part.fibres, shape, surface);
+                fibre_boxes_.push_back({shape, surfaces.size(), box_to_cube(*part.fibres, shape)});
+            }
             if (shape.reverse_orientation)
                 reverse_orientation(part.mesh);
             orient_by_normals(part.mesh);
@@ -150,6 +156,15 @@ class Builder {
             shape.params.fail("", "a transform of turns, moves and scales common to all axes",
                               "one that deforms the fibres");
         }
+    }
+
+    /// To (-1, 1)³ from what holds the fibres, but for a skin at which others may touch it.
+    static glm::dmat4 box_to_cube(const FibreSwatch& fibres, const ShapeDescription& shape) {
+        constexpr double kSkin = 1e-3; ///< of the size
+        const glm::dvec3 low = 1e-6 * fibres.low(), high = 1e-6 * fibres.high();
+        return glm::scale(glm::dmat4(1), 2 * (1 + kSkin) / (high - low)) *
+               glm::translate(glm::dmat4(1), -0.5 * (low + high)) *
+               glm::inverse(glm::dmat4(shape.to_world));
     }
 
     /// Mistakes are told also where nothing is seen of them. Cloths are not measured for that, nor
@@ -205,6 +220,21 @@ class Builder {
                                   "path through smooth fibres meets a point or a single direction",
                                   fmt::format("LightSource \"{}\"", light.type));
             }
+    }
+
+    /// A path crosses the box of fibres in one go and would see nothing else in there.
+    void check_fibres_are_alone(const std::vector<Surface>& surfaces) const {
+        for (const FibreBox& fibres : fibre_boxes_) {
+            const Params& params = fibres.shape.params;
+            const glm::dvec3 eye = fibres.to_cube * glm::dmat4(description_.camera.to_world)[3];
+            if (glm::all(glm::lessThan(glm::abs(eye), glm::dvec3(1))))
+                params.fail("", "a camera outside the box of the fibres", "one among them");
+            for (size_t i = 0; i < surfaces.size(); ++i)
+                if (const size_t inside = triangles_inside(*surfaces[i].mesh, fibres.to_cube);
+                    inside && i != fibres.surface)
+                    params.fail("", "no other shape within the box of the fibres",
+                                fmt::format("{} triangles of another", inside));
+        }
     }
 
     /// In this order: the caller's cloth for a glTF part by its name, or for all parts; the scene's
@@ -313,6 +343,12 @@ class Builder {
     std::map<const MaterialDescription*, std::shared_ptr<const Bsdf>> materials_;
     std::map<const TextureDescription*, std::shared_ptr<const PictureTexture>> textures_;
     std::map<std::shared_ptr<const EncodedPicture>, std::shared_ptr<const Picture>> pictures_;
+    struct FibreBox {
+        const ShapeDescription& shape;
+        size_t surface;
+        glm::dmat4 to_cube;
+    };
+    std::vector<FibreBox> fibre_boxes_;
     std::set<std::string> names_met_;
     std::set<std::string> worn_; ///< names of the overrides that a shape took
 };

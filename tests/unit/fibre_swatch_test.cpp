@@ -103,13 +103,17 @@ TEST(FibreSwatch, EndsAtItsSides) {
     EXPECT_GT(sides, 200);
 }
 
-void expect_refused(const std::string& lines, const std::string& expected) {
+void build(const std::string& lines) {
     const tests::TemporaryFolder folder;
     const auto path = folder / "scene.pbrt";
     tests::write_bytes(path, "Camera \"perspective\"\nWorldBegin\n" + lines);
     std::vector<std::string> warnings;
+    build_scene(parse_pbrt(path), {}, warnings);
+}
+
+void expect_refused(const std::string& lines, const std::string& expected) {
     try {
-        build_scene(parse_pbrt(path), {}, warnings);
+        build(lines);
         ADD_FAILURE() << lines;
     } catch (const FileError& error) {
         EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
@@ -125,6 +129,18 @@ TEST(FibreSwatch, RefusesWhatCannotBeRendered) {
     expect_refused(fibers + "\"float width\" -1", "metres above 0");
     expect_refused(fibers + "\"string colourway\" \"mauve\"", "colourway");
     expect_refused("Shape \"fibers\"", "string filename");
+    const std::string away = "Translate 0.002 0 0.1\nRotate 30 0 0 1\n" + fibers;
+    expect_refused(fibers, "one among them"); // the camera is at the origin
+    const auto triangle = [](double z) {      // its corners far outside, its plane across
+        return fmt::format("\nShape \"trianglemesh\" \"point3 P\" [-9 -9 {0}  9 -9 {0}  0 9 {0}] "
+                           "\"integer indices\" [0 1 2]",
+                           z);
+    };
+    expect_refused(away + triangle(0), "1 triangles of another");
+    expect_refused(away + "\nTranslate 0.009 0 0\n" + fibers, "triangles of another");
+    for (const std::string& beside : {triangle(2e-4), triangle(-2e-4)})
+        build(away + beside);
+    build(away + "\nTranslate 0.011 0 0\n" + fibers);
 }
 
 } // namespace
