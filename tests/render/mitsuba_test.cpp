@@ -10,9 +10,10 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
-// Mitsuba 3 renders what `export --to mitsuba` writes, where it is installed (pip install mitsuba):
-// its pictures must be ours of the same cloth's reflection.
+// Mitsuba 3 renders the same scenes where it is installed (pip install mitsuba numpy): its pictures
+// must be ours, of usual materials and of what `export --to mitsuba` writes of a cloth.
 
 namespace rapport {
 namespace {
@@ -63,23 +64,27 @@ std::string hills() {
 class Mitsuba : public testing::Test {
   protected:
     void SetUp() override {
-        if (std::system("python3 -c 'import mitsuba' 2>/dev/null") != 0)
-            GTEST_SKIP() << "python3 has no mitsuba";
+        if (std::system("python3 -c 'import mitsuba, numpy' 2>/dev/null") != 0)
+            GTEST_SKIP() << "python3 has no mitsuba or no numpy";
         tests::write_bytes(folder_ / "hills.ply", hills());
     }
 
-    Image by_mitsuba(const std::string& file, int seed) {
+    Image by_mitsuba(const nlohmann::json& bsdf, int seed, int bounces = 1) {
         const std::string out = (folder_ / "mitsuba.exr").string();
-        const std::string command =
-            fmt::format("python3 {}/tests/render/mitsuba_render.py {} {} {} {} {} {} >/dev/null",
-                        RAPPORT_SOURCE_DIR, (folder_ / "hills.ply").string(),
-                        (folder_ / file).string(), out, kSize, samples(), seed);
+        const std::string command = fmt::format(
+            "python3 {}/tests/render/mitsuba_render.py {} '{}' {} {} {} {} {} >/dev/null",
+            RAPPORT_SOURCE_DIR, (folder_ / "hills.ply").string(), bsdf.dump(), out, kSize,
+            samples(), seed, bounces);
         if (std::system(command.c_str()) != 0)
             throw std::runtime_error("Mitsuba failed: " + command);
         return read_exr(out);
     }
 
-    Image by_us(const std::string& material, int seed) {
+    nlohmann::json measured(const std::string& file) const {
+        return {{"type", "measured"}, {"filename", (folder_ / file).string()}};
+    }
+
+    Image by_us(const std::string& material, int seed, int bounces = 1) {
         const std::string out = (folder_ / "rapport.exr").string();
         tests::write_bytes(
             folder_ / "scene.pbrt",
@@ -88,12 +93,12 @@ class Mitsuba : public testing::Test {
                 "Camera \"perspective\" \"float fov\" 30\n"
                 "Film \"rgb\" \"integer xresolution\" {0} \"integer yresolution\" {0}\n"
                 "Sampler \"independent\" \"integer pixelsamples\" {1}\n"
-                "Integrator \"path\" \"integer maxdepth\" 1\nWorldBegin\n"
+                "Integrator \"path\" \"integer maxdepth\" {3}\nWorldBegin\n"
                 "LightSource \"infinite\" \"rgb L\" [0.3 0.3 0.3]\n"
                 "LightSource \"distant\" \"rgb L\" [0.6 0.6 0.6] \"point3 from\" [-1.5 1.5 2.5] "
                 "\"point3 to\" [0 0 0]\n"
                 "Material {2}\nShape \"plymesh\" \"string filename\" \"hills.ply\"\n",
-                kSize, samples(), material));
+                kSize, samples(), material, bounces));
         const tests::ProgramRun run = tests::run_program(
             {"render", "scene.pbrt", "-o", out, "--quiet", "--seed", std::to_string(seed)},
             folder_.path().string());
@@ -125,7 +130,7 @@ TEST_F(Mitsuba, RendersTheExportAsWeRenderTheCloth) {
         write_measured(
             measured_fields(tests::synthetic_table(intensity), file, MeasuredColours::rgb),
             folder_ / file);
-        return std::array{by_mitsuba(file, 1), by_mitsuba(file, 2)};
+        return std::array{by_mitsuba(measured(file), 1), by_mitsuba(measured(file), 2)};
     };
     write_table(tests::synthetic_table(turned_satin), folder_ / "satin.bsdf");
     const std::string cloth = "\"cloth\" \"string filename\" \"satin.bsdf\"";
@@ -142,10 +147,49 @@ TEST_F(Mitsuba, RendersTheExportAsWeRenderTheCloth) {
     EXPECT_GT(mirrored, 0.1);
     EXPECT_GT(turned, 0.1);
 
-    const std::string measured = "\"measured\" \"string filename\" \"measured.bsdf\"";
-    const double same_file = rms_difference({by_us(measured, 3), by_us(measured, 4)}, theirs);
+    const std::string imported = "\"measured\" \"string filename\" \"measured.bsdf\"";
+    const double same_file = rms_difference({by_us(imported, 3), by_us(imported, 4)}, theirs);
     std::printf("the same file here and in Mitsuba: RMS %.4f\n", same_file);
     EXPECT_LT(same_file, 0.005);
+}
+
+TEST_F(Mitsuba, RendersDiffuseAndConductorAsWeDo) {
+    constexpr int kBounces = 5;
+    using Json = nlohmann::json;
+    const auto rgb = [](const std::vector<double>& value) {
+        return Json{{"type", "rgb"}, {"value", value}};
+    };
+    const auto diffuse = [&](double red) {
+        return Json{{"type", "diffuse"}, {"reflectance", rgb({red, 0.5, 0.2})}};
+    };
+    const auto conductor = [&](double alpha) { // of copper
+        return Json{{"type", "roughconductor"},
+                    {"distribution", "ggx"},
+                    {"alpha", alpha},
+                    {"eta", rgb({0.2, 0.92, 1.1})},
+                    {"k", rgb({3.91, 2.45, 2.14})}};
+    };
+    struct Case {
+        std::string ours;
+        Json same, other;
+    };
+    for (const Case& material :
+         {Case{"\"diffuse\" \"rgb reflectance\" [0.7 0.5 0.2]", diffuse(0.7), diffuse(0.71)},
+          {"\"conductor\" \"rgb eta\" [0.2 0.92 1.1] \"rgb k\" [3.91 2.45 2.14] "
+           "\"float roughness\" 0.3 \"bool remaproughness\" false",
+           conductor(0.3), conductor(0.31)}}) {
+        const Image ours = by_us(material.ours, 5, kBounces);
+        const auto difference = [&](const Json& bsdf) {
+            return compare(ours, by_mitsuba({{"type", "twosided"}, {"bsdf", bsdf}}, 6, kBounces));
+        };
+        const ImageDifference same = difference(material.same), other = difference(material.other);
+        std::printf(
+            "%s: p %.2g, offset of the mean %.2f standard errors; nearly the same: p %.2g\n",
+            material.ours.c_str(), same.p_value, same.mean_z, other.p_value);
+        EXPECT_TRUE(same.tested);
+        EXPECT_TRUE(same.agree) << material.ours;
+        EXPECT_FALSE(other.agree) << material.ours;
+    }
 }
 
 } // namespace
