@@ -165,7 +165,8 @@ Rgb emitted_radiance(const Scene& scene, const SurfacePoint& point, const glm::v
 
 } // namespace
 
-PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
+PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler,
+                      std::vector<PathVertex>* vertices) {
     PathResult path;
     Rgb throughput(1);
     Scattering last{ray.org, kOnlyWay};
@@ -176,6 +177,8 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler) {
             path.radiance += throughput * escaped_radiance(scene, ray.dir, last);
             break;
         }
+        if (vertices)
+            vertices->push_back({*point, throughput});
         const bool first = depth == 0 && layers == 0;
         if (first)
             path.first = point;

@@ -4,6 +4,7 @@
 #include "renderer/scene/scene.h"
 
 #include <optional>
+#include <vector>
 
 namespace rapport {
 
@@ -16,6 +17,12 @@ struct PathResult {
     float cut = 0;
 };
 
+/// What a path met, and what its light counted on the way there.
+struct PathVertex {
+    SurfacePoint point;
+    Rgb throughput;
+};
+
 /// Follows one camera path against the light.
 ///
 /// At each vertex, light reaches the eye by three ways that share nothing: emission; scattering,
@@ -26,6 +33,8 @@ struct PathResult {
 /// vertex, just as a shadow ray weights it that goes through the same cloth (Scene::transmittance).
 ///
 /// `max_depth` counts scattering events, as in pbrt: 0 shows emission only, 1 adds direct light.
-PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler);
+/// The vertices are told to `vertices`, if there is one.
+PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler,
+                      std::vector<PathVertex>* vertices = nullptr);
 
 } // namespace rapport

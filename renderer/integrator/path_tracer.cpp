@@ -19,6 +19,24 @@ constexpr int kPilot = 16; ///< samples of every pixel before the first plan
 
 bool finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); }
 
+std::string told(const Rgb& c) { return fmt::format("[{} {} {}]", c.r, c.g, c.b); }
+
+/// A pixel's `number`-th path once more, for whoever has to find what is wrong with it.
+std::string path_told(const Scene& scene, const kernel::Ray& ray, Sampler sampler) {
+    std::vector<PathVertex> vertices;
+    trace_path(scene, ray, sampler, &vertices);
+    std::string text = fmt::format("from {}", told(ray.org));
+    for (const PathVertex& vertex : vertices) {
+        const auto& description = vertex.point.surface->description;
+        const std::string material = !description                ? "a surface"
+                                     : description->name.empty() ? description->type
+                                                                 : description->name;
+        text += fmt::format(", {} at {} with weight {}", material, told(vertex.point.position),
+                            told(vertex.throughput));
+    }
+    return text;
+}
+
 FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, int x, int y,
                        int number) {
     const RenderSettings& settings = scene.settings;
@@ -27,11 +45,12 @@ FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, in
     // Uniform over the box filter, so that every sample has weight 1.
     const glm::vec2 offset = (2.0f * sampler.next_2d() - 1.0f) * settings.filter_radius;
     const kernel::Ray ray = rays(glm::vec2(x, y) + 0.5f + offset);
+    const Sampler from_here = sampler;
     const PathResult path = trace_path(scene, ray, sampler);
     if (!finite(path.radiance))
         throw std::runtime_error(
-            fmt::format("pixel ({}, {}), sample {}: radiance [{} {} {}] is not finite", x, y,
-                        number, path.radiance.r, path.radiance.g, path.radiance.b));
+            fmt::format("pixel ({}, {}), sample {}: radiance {} is not finite; its path: {}", x, y,
+                        number, told(path.radiance), path_told(scene, ray, from_here)));
     if (!path.first)
         return {path.radiance};
     const SurfacePoint& point = *path.first;
