@@ -13,6 +13,7 @@ import matplotlib
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
+import matplotlib.ticker
 
 # Equal numbers give equal files, and text stays text.
 plt.rcParams.update({"svg.hashsalt": "rapport", "svg.fonttype": "none", "font.size": 9})
@@ -63,6 +64,11 @@ def main():
             else:
                 axes.errorbar(x, y, yerr=error, marker=".", linewidth=1, capsize=2, label=name)
         axes.set(title=title, xlabel=x_label, ylabel=y_label, xscale=x_scale, yscale=y_scale)
+        if x_scale == "log":  # the decades' numbers suffice
+            axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+        if sweep == "peaks":  # room for the legend
+            axes.margins(y=0.3)
+            axes.set_ylim(bottom=0)
         axes.grid(alpha=0.3)
         if len(named) > 6:  # beside the curves
             axes.legend(bbox_to_anchor=(1.02, 1), loc="upper left", fontsize=7)
