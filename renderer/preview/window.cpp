@@ -124,21 +124,31 @@ glm::ivec2 Window::size() const {
     return size;
 }
 
-void Window::set_text_scale(float scale) {
+void Window::set_text_scale(float scale, float pixels) {
     ImGui::GetIO().Fonts->Clear();
-    load_font(scale);
+    load_font(scale * pixels);
+    ImGui::GetIO().FontGlobalScale = 1 / pixels;
     set_style(scale);
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
 void Window::follow_screen() {
-    float scale, scale_y;
-    glfwGetWindowContentScale(window_, &scale, &scale_y);
-    scale = std::clamp(scale, 0.5f, 4.0f);
-    if (scale != screen_scale_)
-        set_text_scale(scale);
-    screen_scale_ = scale;
+    float screen, screen_y;
+    glfwGetWindowContentScale(window_, &screen, &screen_y);
+    screen = std::clamp(screen, 0.5f, 4.0f);
+    int pixels, height;
+    glfwGetFramebufferSize(window_, &pixels, &height);
+    const int units = size().x; // 0 while it is minimised
+    float ratio = pixel_ratio_;
+    if (units > 0 &&
+        pixels > 0) // to an eighth: a window's size is rounded, its screen's ratio is not
+        ratio = std::max(1.0f, std::round(8.0f * static_cast<float>(pixels) / units)) / 8;
+    if (screen == screen_scale_ && ratio == pixel_ratio_)
+        return;
+    screen_scale_ = screen;
+    pixel_ratio_ = ratio;
+    set_text_scale(screen / ratio, ratio);
 }
 
 void Window::begin_frame(double longest_wait) {

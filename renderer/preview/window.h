@@ -32,15 +32,16 @@ class Window {
     void end_frame(const std::filesystem::path& screenshot = {});
     /// Framebuffer pixels to a unit of ImGui's coordinates.
     float pixel_ratio() const;
-    /// Size of text and of what is clicked, relative to a screen of 96 dpi. It follows the window
+    /// Size of text and of what is clicked in ImGui's coordinates, relative to a screen of 96 dpi,
+    /// and the pixels to a unit of these, for letters as sharp as the screen. It follows the window
     /// from screen to screen; between frames only.
-    void set_text_scale(float scale);
+    void set_text_scale(float scale, float pixels = 1);
 
   private:
     void follow_screen();
 
     GLFWwindow* window_ = nullptr;
-    float screen_scale_ = 1; ///< that the text has followed
+    float screen_scale_ = 1, pixel_ratio_ = 1; ///< that the text has followed
 };
 
 /// A picture for ImGui, while its window is open.

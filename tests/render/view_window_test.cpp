@@ -304,8 +304,12 @@ TEST_F(ViewWindow, TextFollowsTheScale) {
     window.set_text_scale(2);
     EXPECT_EQ(text_height(), 2 * once);
     EXPECT_EQ(ImGui::GetStyle().ItemSpacing.x, 2 * spacing);
+    window.set_text_scale(1, 2); // as large, of finer pixels
+    EXPECT_EQ(text_height(), once);
+    EXPECT_EQ(ImGui::GetFont()->FontSize, 2 * once);
     window.set_text_scale(1);
     EXPECT_EQ(text_height(), once);
+    EXPECT_EQ(ImGui::GetFont()->FontSize, once);
     EXPECT_FALSE(window.lost());
 }
 
