@@ -145,7 +145,7 @@ Image described_image(const Film& film, const Scene& scene, const RenderOptions&
 }
 
 void run(const RenderOptions& options, const CommonOptions& common) {
-    InputLog files;
+    InputLog files(InputLog::Of::bytes);
     const SceneDescription description = describe(options, common);
     const std::vector<std::filesystem::path> paths = outputs(options, description.settings.output);
     MeasuringLine line(common);

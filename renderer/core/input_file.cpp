@@ -38,7 +38,7 @@ std::string hash_of(std::ifstream& stream) {
 
 } // namespace
 
-InputLog::InputLog() : outer_(innermost_log) { innermost_log = this; }
+InputLog::InputLog(Of of) : of_(of), outer_(innermost_log) { innermost_log = this; }
 InputLog::~InputLog() { innermost_log = outer_; }
 
 InputFile open_input(const std::filesystem::path& path) {
@@ -63,11 +63,9 @@ InputFile open_input(const std::filesystem::path& path) {
     file.size = std::filesystem::file_size(path, error);
     if (error)
         throw FileError(path.string(), "", "a readable file", error.message());
-    if (innermost_log) {
-        const std::string hash = hash_of(file.stream) + ' ';
-        for (InputLog* log = innermost_log; log; log = log->outer_)
-            log->hashes_[path.filename().string()] += hash;
-    }
+    for (InputLog* log = innermost_log; log; log = log->outer_)
+        if (log->of_ == InputLog::Of::bytes)
+            log->hashes_[path.filename().string()] += hash_of(file.stream) + ' ';
     return file;
 }
 

@@ -19,13 +19,15 @@ struct InputFile {
 /// within another.
 class InputLog {
   public:
-    InputLog();
+    enum class Of { names, bytes };
+    explicit InputLog(Of of);
     InputLog(const InputLog&) = delete;
     InputLog& operator=(const InputLog&) = delete;
     ~InputLog();
 
     /// By the names of the files without their folders, hashes of their bytes in the order of
-    /// opening. Tells work on some files from work on others, wherever they lie.
+    /// opening; empty in a log of names. Tells work on some files from work on others, wherever
+    /// they lie.
     const std::map<std::string, std::string>& hashes() const { return hashes_; }
     /// Canonical paths, also of files that were not there.
     const std::set<std::filesystem::path>& files() const { return files_; }
@@ -33,6 +35,7 @@ class InputLog {
   private:
     friend InputFile open_input(const std::filesystem::path& path);
 
+    const Of of_;
     std::map<std::string, std::string> hashes_;
     std::set<std::filesystem::path> files_;
     InputLog* outer_;

@@ -21,8 +21,10 @@ bool finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) && s
 
 std::string told(const Rgb& c) { return fmt::format("[{} {} {}]", c.r, c.g, c.b); }
 
-/// A pixel's `number`-th path once more, for whoever has to find what is wrong with it.
+/// A path once more, for whoever has to find what is wrong with it. `sampler` is as it was
+/// before all of the sample.
 std::string path_told(const Scene& scene, const kernel::Ray& ray, Sampler sampler) {
+    sampler.next_2d(); // the place in the pixel
     std::vector<PathVertex> vertices;
     trace_path(scene, ray, sampler, &vertices);
     std::string text = fmt::format("from {}", told(ray.org));
@@ -41,16 +43,18 @@ FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, in
                        int number) {
     const RenderSettings& settings = scene.settings;
     const uint64_t pixel = static_cast<uint64_t>(y) * width + x;
-    Sampler sampler(settings.sampler, settings.seed, pixel, static_cast<uint32_t>(number));
+    const auto new_sampler = [&] {
+        return Sampler(settings.sampler, settings.seed, pixel, static_cast<uint32_t>(number));
+    };
+    Sampler sampler = new_sampler();
     // Uniform over the box filter, so that every sample has weight 1.
     const glm::vec2 offset = (2.0f * sampler.next_2d() - 1.0f) * settings.filter_radius;
     const kernel::Ray ray = rays(glm::vec2(x, y) + 0.5f + offset);
-    const Sampler from_here = sampler;
     const PathResult path = trace_path(scene, ray, sampler);
     if (!finite(path.radiance))
         throw std::runtime_error(
             fmt::format("pixel ({}, {}), sample {}: radiance {} is not finite; its path: {}", x, y,
-                        number, told(path.radiance), path_told(scene, ray, from_here)));
+                        number, told(path.radiance), path_told(scene, ray, new_sampler())));
     if (!path.first)
         return {path.radiance};
     const SurfacePoint& point = *path.first;

@@ -46,7 +46,7 @@ ClothTable ready(const RisingMeasurement& measurement, const std::filesystem::pa
 ClothTable first_table(const std::filesystem::path& file, const MeasuringWatch& watch,
                        const StopSignal& stopped) {
     const auto asked = std::chrono::steady_clock::now();
-    const InputLog log;
+    const InputLog log(InputLog::Of::names);
     ClothTable made;
     if (is_stored(file)) {
         made = ready(read_table(file), nullptr, file.string(), stopped);
@@ -144,7 +144,7 @@ void ClothWorker::run() {
             stop_current_ = false;
         }
         bool more = true;
-        const InputLog log;
+        const InputLog log(InputLog::Of::names);
         try {
             more = advance(*task, [this] { return stop_current_.load(); });
         } catch (const Stopped&) { // a newer task may come first
@@ -162,18 +162,14 @@ void ClothWorker::run() {
 bool ClothWorker::advance(Task& task, const StopSignal& stopped) {
     const auto tell_of = [&](ClothTable table) {
         table.seconds = std::chrono::duration<double>(Clock::now() - task.asked).count();
-        tell({task.file,
-              task.request,
-              std::make_shared<const ClothTable>(std::move(table)),
-              {},
-              {}});
+        tell({task.file, task.request, std::make_shared<const ClothTable>(std::move(table))});
     };
     if (!task.cloth && is_stored(task.file)) {
         tell_of(first_table(task.file, {}, stopped));
         return false;
     }
     if (!task.measurement) {
-        const InputLog log;
+        const InputLog log(InputLog::Of::names);
         task.measurement.emplace(task.cloth ? task.cloth : read(task.file));
         task.inputs = log.files();
     }

@@ -48,9 +48,9 @@ class ClothWorker {
     struct News {
         std::filesystem::path file;
         uint64_t request = 0;
-        std::shared_ptr<const ClothTable> table; ///< or
-        std::string error;                       ///< why there is none
-        std::set<std::filesystem::path> inputs;  ///< with an error: the files that were read
+        std::shared_ptr<const ClothTable> table;  ///< or
+        std::string error{};                      ///< why there is none
+        std::set<std::filesystem::path> inputs{}; ///< with an error: the files that were read
     };
     /// What there is since the last call.
     std::vector<News> take_news();

@@ -44,7 +44,7 @@ Session::~Session() { stop_reload_ = true; }
 Session::Reload Session::load(const SceneSource& source, const ClothTables& known,
                               const LoadingWatch& watch, const StopSignal& stopped) {
     Reload reload;
-    const InputLog log;
+    const InputLog log(InputLog::Of::names);
     try {
         reload.loaded = load_scene(source, known, watch, stopped);
     } catch (...) {

@@ -2,8 +2,8 @@
 
 #include "renderer/core/error.h"
 #include "renderer/scene/imagemap.h"
+#include "renderer/scene/mesh/enters_cube.h"
 #include "renderer/scene/mesh/mesh_operations.h"
-#include "renderer/scene/mesh/triangles_inside.h"
 #include "renderer/scene/shape/fibre_swatch.h"
 #include "renderer/scene/shape/shape.h"
 
@@ -230,10 +230,8 @@ class Builder {
             if (glm::all(glm::lessThan(glm::abs(eye), glm::dvec3(1))))
                 params.fail("", "a camera outside the box of the fibres", "one among them");
             for (size_t i = 0; i < surfaces.size(); ++i)
-                if (const size_t inside = triangles_inside(*surfaces[i].mesh, fibres.to_cube);
-                    inside && i != fibres.surface)
-                    params.fail("", "no other shape within the box of the fibres",
-                                fmt::format("{} triangles of another", inside));
+                if (i != fibres.surface && enters_cube(*surfaces[i].mesh, fibres.to_cube))
+                    params.fail("", "no other shape within the box of the fibres", "one");
         }
     }
 

@@ -136,8 +136,8 @@ TEST(FibreSwatch, RefusesWhatCannotBeRendered) {
                            "\"integer indices\" [0 1 2]",
                            z);
     };
-    expect_refused(away + triangle(0), "1 triangles of another");
-    expect_refused(away + "\nTranslate 0.009 0 0\n" + fibers, "triangles of another");
+    expect_refused(away + triangle(0), "no other shape");
+    expect_refused(away + "\nTranslate 0.009 0 0\n" + fibers, "no other shape");
     for (const std::string& beside : {triangle(2e-4), triangle(-2e-4)})
         build(away + beside);
     build(away + "\nTranslate 0.011 0 0\n" + fibers);

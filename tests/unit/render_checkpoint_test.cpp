@@ -135,7 +135,7 @@ TEST(InputLog, TellsFilesByNameAndBytes) {
     const tests::TemporaryFolder folder, elsewhere;
     const auto hashes = [](const std::filesystem::path& path, const std::string& bytes) {
         tests::write_bytes(path, bytes);
-        const InputLog log;
+        const InputLog log(InputLog::Of::bytes);
         InputFile file = open_input(path);
         EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file.stream), {}), bytes);
         return log.hashes();
@@ -151,6 +151,25 @@ TEST(InputLog, TellsFilesByNameAndBytes) {
     }
     EXPECT_NE(hashes(folder / "a", large + '\0'), first);
     EXPECT_NE(hashes(folder / "a", ""), hashes(folder / "a", std::string(1, '\0')));
+}
+
+TEST(InputLog, OfNamesTellsAlsoWhatIsMissingAndWhatAnInnerOneSaw) {
+    const tests::TemporaryFolder folder;
+    tests::write_bytes(folder / "a", "a");
+    const auto canonical = [&](const char* name) {
+        return std::filesystem::weakly_canonical(folder / name);
+    };
+    using Files = std::set<std::filesystem::path>;
+    const InputLog log(InputLog::Of::names);
+    {
+        const InputLog inner(InputLog::Of::bytes);
+        open_input(folder / "a");
+        EXPECT_EQ(inner.files(), Files{canonical("a")});
+        EXPECT_EQ(inner.hashes().size(), 1u);
+    }
+    EXPECT_THROW(open_input(folder / "absent"), FileError);
+    EXPECT_EQ(log.files(), (Files{canonical("a"), canonical("absent")}));
+    EXPECT_TRUE(log.hashes().empty());
 }
 
 TEST(Command, AKilledPictureIsResumedToTheSamePixels) {

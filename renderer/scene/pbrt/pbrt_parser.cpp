@@ -1,7 +1,6 @@
 #include "renderer/scene/pbrt/pbrt_parser.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/input_file.h"
 #include "renderer/scene/look_at.h"
 #include "renderer/scene/pbrt/pbrt_lexer.h"
 #include "renderer/scene/pbrt/pbrt_options.h"
@@ -13,6 +12,7 @@
 #include <fmt/ranges.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <optional>
 #include <utility>
 
 namespace rapport {
@@ -61,6 +61,10 @@ class Parser {
 
     void parse_file(const std::filesystem::path& path) {
         PbrtLexer lexer(path);
+        parse(lexer);
+    }
+
+    void parse(PbrtLexer& lexer) {
         PbrtLexer* const outer = std::exchange(lexer_, &lexer);
         while (lexer.peek().kind != Kind::end)
             parse_directive();
@@ -195,12 +199,15 @@ class Parser {
                                 "a deeper Include");
         const PbrtToken name = read_token("a file name in quotes");
         const std::filesystem::path file = scene_.path.parent_path() / name.text;
+        std::optional<PbrtLexer> included;
         try {
-            open_input(file); // logged as an input though it be missing
-        } catch (const FileError&) {
+            included.emplace(file);
+        } catch (const FileError& error) {
+            if (!error.place.empty()) // it is there, and what is in it is wrong
+                throw;
             throw lexer_->error(name, "the name of a file");
         }
-        parse_file(file);
+        parse(*included);
         --include_depth_;
     }
 

@@ -1,4 +1,4 @@
-#include "renderer/scene/mesh/triangles_inside.h"
+#include "renderer/scene/mesh/enters_cube.h"
 
 #include <algorithm>
 #include <array>
@@ -39,13 +39,13 @@ bool enters_cube(const std::array<glm::dvec3, 3>& corners) {
 
 } // namespace
 
-size_t triangles_inside(const TriangleMesh& mesh, const glm::dmat4& to_cube) {
-    return static_cast<size_t>(std::ranges::count_if(mesh.triangles, [&](const auto& triangle) {
+bool enters_cube(const TriangleMesh& mesh, const glm::dmat4& to_cube) {
+    return std::ranges::any_of(mesh.triangles, [&](const glm::uvec3& triangle) {
         std::array<glm::dvec3, 3> corners;
         for (int i = 0; i < 3; ++i)
             corners[i] = to_cube * glm::dvec4(mesh.positions[triangle[i]], 1);
         return enters_cube(corners);
-    }));
+    });
 }
 
 } // namespace rapport
