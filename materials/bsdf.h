@@ -34,6 +34,11 @@ struct BsdfSample {
     float pdf;       ///< [1/sr], or kMirror; of scattering only, see `unscattered`
 };
 
+/// Of the light from one direction.
+struct BsdfShares {
+    Rgb unscattered, scattered;
+};
+
 /// How light scatters where it meets a surface. Constant after construction.
 class Bsdf {
   public:
@@ -61,6 +66,10 @@ class Bsdf {
     /// Share of the light from `eye` that is scattered, for the albedo image and for how often
     /// paths are; an estimate will do, 0 only where nothing is.
     virtual Rgb albedo(const glm::vec3& eye) const = 0;
+    /// `unscattered` and `albedo` of one direction, where a material can share the work.
+    virtual BsdfShares shares(const glm::vec3& eye) const {
+        return {unscattered(eye), albedo(eye)};
+    }
 };
 
 /// A measured table by file name, `.bsdf` or a `.toml` measured on the way, in a colourway of the

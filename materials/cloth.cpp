@@ -47,6 +47,11 @@ class Cloth final : public Bsdf {
 
     Rgb albedo(const glm::vec3& eye) const override { return table_->albedo(to_weave(eye)); }
 
+    BsdfShares shares(const glm::vec3& eye) const override {
+        const TableBsdf::Shares both = table_->shares(to_weave(eye));
+        return {both.unscattered, both.scattered};
+    }
+
   private:
     glm::vec3 to_weave(const glm::vec3& w) const {
         return {weft_ * (cosine_ * w.x + sine_ * w.y), cosine_ * w.y - sine_ * w.x, w.z};

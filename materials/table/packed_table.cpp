@@ -94,9 +94,8 @@ PackedTable::PackedTable(const BsdfTable& table, const StopSignal& stopped)
       exit_axis_(table.exit_axis), thetas_(table.grid_theta.size()), phis_(table.grid_phi.size()),
       side_nodes_(thetas_ * phis_), nodes_(2 * side_nodes_), rows_(exits_.rows()),
       block_bins_(exits_.bins()), bins_(2 * exits_.bins() * nodes_ + 1), scale_(nodes_ + 1),
-      reflected_(nodes_ + 1), transmitted_(nodes_ + 1), albedo_(nodes_ + 1),
-      unscattered_(nodes_ + 1), column_lines_(Line::lines(exits_.columns())),
-      row_lines_(Line::lines(exits_.rows())),
+      reflected_(nodes_ + 1), transmitted_(nodes_ + 1), shares_(nodes_),
+      column_lines_(Line::lines(exits_.columns())), row_lines_(Line::lines(exits_.rows())),
       cumulative_lines_(column_lines_ + exits_.columns() * row_lines_),
       cumulative_(2 * nodes_ * cumulative_lines_) {
     const std::vector<Rgb> band_rgb = table.bands.to_rgb();
@@ -167,8 +166,7 @@ void PackedTable::add_node(const BsdfTable& table, size_t side, size_t theta, si
         const auto share = static_cast<float>(accumulate_shares(columns, of_columns));
         (block == 0 ? reflected_ : transmitted_)[at] = share;
     }
-    albedo_[at] = rgb0(Rgb(flux));
-    unscattered_[at] = rgb0(unscattered);
+    shares_[at] = {rgb0(unscattered), rgb0(Rgb(flux))};
 }
 
 // Looking up: hardly a branch, four numbers at a time.
@@ -212,13 +210,6 @@ inline Float4 PackedTable::albedo_parts(const Eye& eye) const {
 inline float PackedTable::mean_albedo(const Eye& eye) const {
     const Float4 parts = albedo_parts(eye);
     return ((parts[0] + parts[1]) + parts[2]) + parts[3];
-}
-
-inline Float4 PackedTable::blended(const Eye& eye, const std::vector<Float4>& values) const {
-    Float4 sum{};
-    for (size_t k = 0; k < 4; ++k)
-        sum += eye.weight[k] * values[eye.node(k)];
-    return sum;
 }
 
 inline Float4 PackedTable::intensity(const Eye& eye, size_t block, const FastMesh::Place& place,
@@ -312,14 +303,15 @@ std::optional<PackedTable::Sample> PackedTable::sample(const glm::vec3& eye, flo
     return Sample{light, {w[0], w[1], w[2]}, sum / (3 * albedo)};
 }
 
-Rgb PackedTable::albedo(const glm::vec3& eye) const {
-    const Float4 c = blended(prepare(eye, eye).eye, albedo_);
-    return {c[0], c[1], c[2]};
-}
-
-Rgb PackedTable::unscattered(const glm::vec3& eye) const {
-    const Float4 c = blended(prepare(eye, eye).eye, unscattered_);
-    return {c[0], c[1], c[2]};
+PackedTable::Shares PackedTable::shares(const glm::vec3& eye) const {
+    const Eye prepared = prepare(eye, eye).eye;
+    Float4 u{}, s{};
+    for (size_t k = 0; k < 4; ++k) {
+        const NodeShares& node = shares_[prepared.node(k)];
+        u += prepared.weight[k] * node.unscattered;
+        s += prepared.weight[k] * node.scattered;
+    }
+    return {{u[0], u[1], u[2]}, {s[0], s[1], s[2]}};
 }
 
 } // namespace rapport

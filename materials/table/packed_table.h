@@ -38,8 +38,10 @@ class PackedTable {
     /// `choice` picks node and side, `u` the place: neighbours stay neighbours but for a half-turn
     /// within their bin, for samples that are spread evenly.
     std::optional<Sample> sample(const glm::vec3& eye, float choice, const glm::vec2& u) const;
-    Rgb albedo(const glm::vec3& eye) const;
-    Rgb unscattered(const glm::vec3& eye) const;
+    struct Shares {
+        Rgb unscattered, scattered; ///< of the light from `eye`
+    };
+    Shares shares(const glm::vec3& eye) const;
 
   private:
     /// The grid along one angle of incidence.
@@ -74,7 +76,6 @@ class PackedTable {
     EyeAndLight prepare(const glm::vec3& eye, const glm::vec3& light) const;
     Float4 albedo_parts(const Eye& eye) const;
     float mean_albedo(const Eye& eye) const;
-    Float4 blended(const Eye& eye, const std::vector<Float4>& values) const;
     /// The interpolant [1/sr]; the fourth lane is not used.
     Float4 intensity(const Eye& eye, size_t block, const FastMesh::Place& place,
                      float density) const;
@@ -101,7 +102,10 @@ class PackedTable {
     std::vector<Bin> bins_;                      ///< [block][bin][node]
     std::vector<float> scale_;                   ///< [node]: of the squares of the roots
     std::vector<float> reflected_, transmitted_; ///< [node]: mean albedos
-    std::vector<Float4> albedo_, unscattered_;   ///< [node]; the fourth is not used
+    struct NodeShares {
+        Float4 unscattered, scattered; ///< the fourth is not used
+    };
+    std::vector<NodeShares> shares_; ///< [node]
     /// [node][block]: the share of each column in its block, then of each row in its column,
     /// summed up to 1 (or 0 throughout), in whole cache lines.
     size_t column_lines_, row_lines_, cumulative_lines_;

@@ -43,12 +43,8 @@ std::optional<TableBsdf::Sample> TableBsdf::sample(const glm::vec3& eye, float c
     return packed_->sample(eye, choice, u);
 }
 
-Rgb TableBsdf::unscattered(const glm::vec3& eye) const {
-    return eye.z == 0 ? Rgb(0) : packed_->unscattered(eye);
-}
-
-Rgb TableBsdf::albedo(const glm::vec3& eye) const {
-    return eye.z == 0 ? Rgb(0) : packed_->albedo(eye);
+TableBsdf::Shares TableBsdf::shares(const glm::vec3& eye) const {
+    return eye.z == 0 ? Shares{Rgb(0), Rgb(0)} : packed_->shares(eye);
 }
 
 } // namespace rapport

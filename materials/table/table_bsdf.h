@@ -27,8 +27,10 @@ class TableBsdf {
     Value eval_and_pdf(const glm::vec3& eye, const glm::vec3& light) const;
     using Sample = PackedTable::Sample;
     std::optional<Sample> sample(const glm::vec3& eye, float choice, const glm::vec2& u) const;
-    Rgb unscattered(const glm::vec3& eye) const;
-    Rgb albedo(const glm::vec3& eye) const;
+    using Shares = PackedTable::Shares;
+    Shares shares(const glm::vec3& eye) const;
+    Rgb unscattered(const glm::vec3& eye) const { return shares(eye).unscattered; }
+    Rgb albedo(const glm::vec3& eye) const { return shares(eye).scattered; }
 
     const BsdfTable& table() const { return table_; }
 

@@ -12,10 +12,9 @@ enum class Purpose : uint32_t {
     fibre_dither,
     fibre_jitter,
     colour_solve,
-    scramble,
+    walk,
     test,
     realisation,
-    walk,
 };
 
 /// Counter-based random numbers (Philox4x32-10; Salmon et al. 2011, "Parallel Random Numbers: As

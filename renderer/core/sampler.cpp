@@ -6,21 +6,29 @@ namespace rapport {
 namespace {
 
 /// A bijection of 64 bits that leaves no visible pattern (Steele et al. 2014, SplitMix64).
+constexpr uint64_t kGolden = 0x9E3779B97F4A7C15u;
 uint64_t mix(uint64_t x) {
     x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
     x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
     return x ^ (x >> 31);
 }
 
-float unit_float(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+float unit_float(uint32_t fraction) {
+    return static_cast<float>(sobol::reverse_bits(fraction) >> 8) * 0x1p-24f;
+}
+
+/// Another order of the samples, in which every aligned block of 2^k of them stays one.
+uint32_t shuffled(uint32_t reversed_sample, uint32_t seed) {
+    return sobol::reverse_bits(sobol::owen_scramble(reversed_sample, seed));
+}
 
 /// The seeds of one padded dimension or pair: one to shuffle the index, one to scramble each axis.
 struct PadSeeds {
     uint32_t shuffle, x, y;
 
     PadSeeds(uint64_t scramble_seed, uint32_t dimension) {
-        const uint64_t first = mix(scramble_seed + dimension * 0x9E3779B97F4A7C15u);
-        const uint64_t second = mix(first + 0x9E3779B97F4A7C15u);
+        const uint64_t first = mix(scramble_seed + dimension * kGolden);
+        const uint64_t second = mix(first + kGolden);
         shuffle = static_cast<uint32_t>(first);
         x = static_cast<uint32_t>(first >> 32);
         y = static_cast<uint32_t>(second);
@@ -30,20 +38,15 @@ struct PadSeeds {
 } // namespace
 
 Sampler::Sampler(Kind kind, uint64_t seed, uint64_t pixel, uint32_t sample)
-    : kind_(kind), rng_(seed, Purpose::pixel, pixel, sample), scramble_seed_(0),
-      sample_(sample / 2) {
-    if (kind_ == Kind::sobol) {
-        CounterRng scramble(seed, Purpose::scramble, pixel, sample % 2);
-        scramble_seed_ = scramble.bits();
-        scramble_seed_ = scramble_seed_ << 32 | scramble.bits();
-    }
-}
+    : kind_(kind), rng_(seed, Purpose::pixel, pixel, sample),
+      scramble_seed_(mix(mix(seed + kGolden) + 2 * pixel + sample % 2)),
+      reversed_sample_(sobol::reverse_bits(sample / 2)) {}
 
 float Sampler::next_1d() {
     if (kind_ == Kind::independent)
         return rng_.uniform_float();
     const PadSeeds seeds(scramble_seed_, dimension_++);
-    const uint32_t index = sobol::owen_scramble(sample_, seeds.shuffle);
+    const uint32_t index = shuffled(reversed_sample_, seeds.shuffle);
     return unit_float(sobol::owen_scramble(sobol::first_dimension(index), seeds.x));
 }
 
@@ -53,7 +56,7 @@ glm::vec2 Sampler::next_2d() {
         return {x, rng_.uniform_float()};
     }
     const PadSeeds seeds(scramble_seed_, dimension_++);
-    const uint32_t index = sobol::owen_scramble(sample_, seeds.shuffle);
+    const uint32_t index = shuffled(reversed_sample_, seeds.shuffle);
     return {unit_float(sobol::owen_scramble(sobol::first_dimension(index), seeds.x)),
             unit_float(sobol::owen_scramble(sobol::second_dimension(index), seeds.y))};
 }

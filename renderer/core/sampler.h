@@ -24,7 +24,7 @@ class Sampler {
     Kind kind_;
     CounterRng rng_;
     uint64_t scramble_seed_;
-    uint32_t sample_, dimension_ = 0;
+    uint32_t reversed_sample_, dimension_ = 0;
 };
 
 } // namespace rapport

@@ -165,14 +165,13 @@ Rgb emitted_radiance(const Scene& scene, const SurfacePoint& point, const glm::v
 
 } // namespace
 
-PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler,
-                      std::vector<PathVertex>* vertices) {
+PathResult trace_path(const Scene& scene, kernel::Ray ray, std::optional<SurfacePoint> point,
+                      Sampler& sampler, std::vector<PathVertex>* vertices) {
     PathResult path;
     Rgb throughput(1);
     Scattering last{ray.org, kOnlyWay};
     int depth = 0;
-    for (int layers = 0; layers <= Scene::kMaxLayers;) {
-        const std::optional<SurfacePoint> point = scene.intersect(ray);
+    for (int layers = 0; layers <= Scene::kMaxLayers; point = scene.intersect(ray)) {
         if (!point) {
             path.radiance += throughput * escaped_radiance(scene, ray.dir, last);
             break;
@@ -210,9 +209,8 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler,
         const glm::vec3 eye = frame.to_local(-ray.dir);
         const Bsdf& material = *point->surface->material;
         const bool scatters = depth < scene.settings.max_depth;
-        const Rgb unscattered = material.unscattered(eye);
+        const auto [unscattered, albedo] = material.shares(eye);
         const float through = mean(unscattered);
-        const Rgb albedo = first || through > 0 || !scatters ? material.albedo(eye) : Rgb(0);
         if (first)
             path.albedo = albedo * point->reflectance();
         if (!scatters) // even if the unscattered light goes on

@@ -33,8 +33,9 @@ struct PathVertex {
 /// vertex, just as a shadow ray weights it that goes through the same cloth (Scene::transmittance).
 ///
 /// `max_depth` counts scattering events, as in pbrt: 0 shows emission only, 1 adds direct light.
-/// The vertices are told to `vertices`, if there is one.
-PathResult trace_path(const Scene& scene, kernel::Ray ray, Sampler& sampler,
-                      std::vector<PathVertex>* vertices = nullptr);
+/// `point` is what `ray` meets, which is traced in packets. The vertices are told to `vertices`, if
+/// there is one.
+PathResult trace_path(const Scene& scene, kernel::Ray ray, std::optional<SurfacePoint> point,
+                      Sampler& sampler, std::vector<PathVertex>* vertices = nullptr);
 
 } // namespace rapport

@@ -21,13 +21,28 @@ bool finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) && s
 
 std::string told(const Rgb& c) { return fmt::format("[{} {} {}]", c.r, c.g, c.b); }
 
-/// A path once more, for whoever has to find what is wrong with it. `sampler` is as it was
-/// before all of the sample.
-std::string path_told(const Scene& scene, const kernel::Ray& ray, Sampler sampler) {
-    sampler.next_2d(); // the place in the pixel
+/// A sample of a pixel, about to be taken.
+struct CameraSample {
+    int x, y, number;
+    Sampler sampler; ///< what is left of it when the place in the pixel is chosen
+    kernel::Ray ray;
+};
+
+CameraSample camera_sample(const Scene& scene, const CameraRays& rays, int width, int x, int y,
+                           int number) {
+    const RenderSettings& settings = scene.settings;
+    const uint64_t pixel = static_cast<uint64_t>(y) * width + x;
+    Sampler sampler(settings.sampler, settings.seed, pixel, static_cast<uint32_t>(number));
+    // Uniform over the box filter, so that every sample has weight 1.
+    const glm::vec2 offset = (2.0f * sampler.next_2d() - 1.0f) * settings.filter_radius;
+    return {x, y, number, sampler, rays(glm::vec2(x, y) + 0.5f + offset)};
+}
+
+/// A path once more, for whoever has to find what is wrong with it.
+std::string path_told(const Scene& scene, CameraSample sample) {
     std::vector<PathVertex> vertices;
-    trace_path(scene, ray, sampler, &vertices);
-    std::string text = fmt::format("from {}", told(ray.org));
+    trace_path(scene, sample.ray, scene.intersect(sample.ray), sample.sampler, &vertices);
+    std::string text = fmt::format("from {}", told(sample.ray.org));
     for (const PathVertex& vertex : vertices) {
         const auto& description = vertex.point.surface->description;
         const std::string material = !description                ? "a surface"
@@ -39,22 +54,16 @@ std::string path_told(const Scene& scene, const kernel::Ray& ray, Sampler sample
     return text;
 }
 
-FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, int x, int y,
-                       int number) {
-    const RenderSettings& settings = scene.settings;
-    const uint64_t pixel = static_cast<uint64_t>(y) * width + x;
-    const auto new_sampler = [&] {
-        return Sampler(settings.sampler, settings.seed, pixel, static_cast<uint32_t>(number));
-    };
-    Sampler sampler = new_sampler();
-    // Uniform over the box filter, so that every sample has weight 1.
-    const glm::vec2 offset = (2.0f * sampler.next_2d() - 1.0f) * settings.filter_radius;
-    const kernel::Ray ray = rays(glm::vec2(x, y) + 0.5f + offset);
-    const PathResult path = trace_path(scene, ray, sampler);
+/// `met` is what the sample's ray meets.
+FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, CameraSample& sample,
+                       const std::optional<SurfacePoint>& met) {
+    const PathResult path = trace_path(scene, sample.ray, met, sample.sampler);
     if (!finite(path.radiance))
         throw std::runtime_error(
-            fmt::format("pixel ({}, {}), sample {}: radiance {} is not finite; its path: {}", x, y,
-                        number, told(path.radiance), path_told(scene, ray, new_sampler())));
+            fmt::format("pixel ({}, {}), sample {}: radiance {} is not finite; its path: {}",
+                        sample.x, sample.y, sample.number, told(path.radiance),
+                        path_told(scene, camera_sample(scene, rays, width, sample.x, sample.y,
+                                                       sample.number))));
     if (!path.first)
         return {path.radiance};
     const SurfacePoint& point = *path.first;
@@ -163,10 +172,23 @@ class Rendering {
 
 void sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::Tile& tile,
                  int until) {
+    const int width = film.resolution().x;
+    const int samples = until - tile.samples, row = samples * (tile.end.x - tile.first.x);
+    kernel::Packet<kernel::Ray> camera_rays;
+    std::vector<CameraSample> packet;
+    packet.reserve(camera_rays.size());
     for (int y = tile.first.y; y < tile.end.y; ++y)
-        for (int x = tile.first.x; x < tile.end.x; ++x)
-            for (int sample = tile.samples; sample < until; ++sample)
-                film.add(x, y, sample, take_sample(scene, rays, film.resolution().x, x, y, sample));
+        for (int i = 0; i < row; packet.clear()) {
+            for (; i < row && packet.size() < camera_rays.size(); ++i) {
+                packet.push_back(camera_sample(scene, rays, width, tile.first.x + i / samples, y,
+                                               tile.samples + i % samples));
+                camera_rays[packet.size() - 1] = packet.back().ray;
+            }
+            const auto met = scene.intersect(std::span(camera_rays).first(packet.size()));
+            for (size_t k = 0; k < packet.size(); ++k)
+                film.add(packet[k].x, y, packet[k].number,
+                         take_sample(scene, rays, width, packet[k], met[k]));
+        }
     tile.samples = until;
 }
 

@@ -23,11 +23,13 @@ inline void intersect(RTCScene scene, Context& context, RTCRayHit& ray) {
     arguments.context = &context;
     rtcIntersect1(scene, &ray, &arguments);
 }
-inline void occluded(RTCScene scene, Context& context, RTCRay& ray) {
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
+/// Of those that are marked by −1 in `valid`.
+inline void intersect8(const int* valid, RTCScene scene, Context& context, RTCRayHit8& rays) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
     arguments.context = &context;
-    rtcOccluded1(scene, &ray, &arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &rays, &arguments);
 }
 #else
 using Context = RTCIntersectContext;
@@ -35,8 +37,9 @@ inline void initialise(Context& context) { rtcInitIntersectContext(&context); }
 inline void intersect(RTCScene scene, Context& context, RTCRayHit& ray) {
     rtcIntersect1(scene, &context, &ray);
 }
-inline void occluded(RTCScene scene, Context& context, RTCRay& ray) {
-    rtcOccluded1(scene, &context, &ray);
+inline void intersect8(const int* valid, RTCScene scene, Context& context, RTCRayHit8& rays) {
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &context, &rays);
 }
 #endif
 

@@ -14,14 +14,11 @@ bool finite(const glm::vec3& v) {
 }
 
 /// What Embree may be asked: it aborts the process on NaN, on far origins and on negative tnear.
-std::optional<RTCRay> usable(const Ray& ray) {
+bool usable(const Ray& ray) {
     constexpr float kFarthest = 1e18f;
-    const float tnear = std::max(ray.tnear, 0.0f); // also 0 for NaN, which the next line refuses
-    if (!finite(ray.org) || !finite(ray.dir) || std::isnan(ray.tnear) || !(tnear <= ray.tfar) ||
-        glm::any(glm::greaterThan(glm::abs(ray.org), glm::vec3(kFarthest))))
-        return std::nullopt;
-    return embree::make_ray(ray.org.x, ray.org.y, ray.org.z, ray.dir.x, ray.dir.y, ray.dir.z, tnear,
-                            ray.tfar);
+    return finite(ray.org) && finite(ray.dir) && !std::isnan(ray.tnear) &&
+           std::max(ray.tnear, 0.0f) <= ray.tfar &&
+           !glm::any(glm::greaterThan(glm::abs(ray.org), glm::vec3(kFarthest)));
 }
 
 } // namespace
@@ -76,12 +73,13 @@ void Scene::commit() {
 }
 
 std::optional<Hit> Scene::intersect(const Ray& ray) const {
-    const std::optional<RTCRay> safe = usable(ray);
-    if (!safe)
+    if (!usable(ray))
         return std::nullopt;
     embree::Context context;
     embree::initialise(context);
-    RTCRayHit query = embree::make_ray_hit(*safe);
+    RTCRayHit query =
+        embree::make_ray_hit(embree::make_ray(ray.org.x, ray.org.y, ray.org.z, ray.dir.x, ray.dir.y,
+                                              ray.dir.z, std::max(ray.tnear, 0.0f), ray.tfar));
     embree::intersect(implementation_->scene.get(), context, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return std::nullopt;
@@ -93,14 +91,40 @@ std::optional<Hit> Scene::intersect(const Ray& ray) const {
                glm::normalize(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z))};
 }
 
-bool Scene::occluded(const Ray& ray) const {
-    std::optional<RTCRay> query = usable(ray);
-    if (!query)
-        return false;
+Packet<std::optional<Hit>> Scene::intersect(std::span<const Ray> rays) const {
+    alignas(32) Packet<int> asked{};
+    RTCRayHit8 query;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const Ray& ray = rays[i];
+        asked[i] = usable(ray) ? -1 : 0;
+        query.ray.org_x[i] = ray.org.x;
+        query.ray.org_y[i] = ray.org.y;
+        query.ray.org_z[i] = ray.org.z;
+        query.ray.tnear[i] = std::max(ray.tnear, 0.0f);
+        query.ray.dir_x[i] = ray.dir.x;
+        query.ray.dir_y[i] = ray.dir.y;
+        query.ray.dir_z[i] = ray.dir.z;
+        query.ray.time[i] = 0;
+        query.ray.tfar[i] = ray.tfar;
+        query.ray.mask[i] = ~0u;
+        query.ray.id[i] = query.ray.flags[i] = 0;
+        query.hit.geomID[i] = query.hit.primID[i] = query.hit.instID[0][i] =
+            RTC_INVALID_GEOMETRY_ID;
+    }
     embree::Context context;
     embree::initialise(context);
-    embree::occluded(implementation_->scene.get(), context, *query);
-    return query->tfar < 0; // Embree's mark of a blocked ray
+    embree::intersect8(asked.data(), implementation_->scene.get(), context, query);
+    Packet<std::optional<Hit>> hits;
+    for (size_t i = 0; i < rays.size(); ++i)
+        if (asked[i] && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
+            hits[i] = Hit{
+                query.ray.tfar[i],
+                query.hit.geomID[i],
+                query.hit.primID[i],
+                query.hit.u[i],
+                query.hit.v[i],
+                glm::normalize(glm::vec3(query.hit.Ng_x[i], query.hit.Ng_y[i], query.hit.Ng_z[i]))};
+    return hits;
 }
 
 std::pair<glm::vec3, glm::vec3> Scene::bounds() const {

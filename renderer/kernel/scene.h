@@ -2,6 +2,7 @@
 
 #include "renderer/core/math.h"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -17,6 +18,9 @@ struct Ray {
     float tnear = 0;
     float tfar = std::numeric_limits<float>::infinity();
 };
+
+/// As many as are traced at once.
+template <class T> using Packet = std::array<T, 8>;
 
 struct Hit {
     float t;
@@ -41,7 +45,9 @@ class Scene {
     void commit();
 
     std::optional<Hit> intersect(const Ray& ray) const;
-    bool occluded(const Ray& ray) const;
+    /// What rays meet that lie close together, such as those of a pixel, at less than the price of
+    /// each alone; at most a packet of them.
+    Packet<std::optional<Hit>> intersect(std::span<const Ray> rays) const;
     /// Lower and upper corner of everything in the scene.
     std::pair<glm::vec3, glm::vec3> bounds() const;
 

@@ -23,11 +23,11 @@ CameraRays::CameraRays(const Camera& camera) {
                            0, (window.z - window.w) / size.y, 0, //
                            window.x, window.w, 1);
     const glm::mat3 axes(camera.to_world);
+    from_eye_ = camera.kind == Camera::Kind::perspective;
     eye_ = glm::vec3(camera.to_world[3]);
     forward_ = glm::normalize(axes[2]);
-    if (camera.kind == Camera::Kind::perspective) {
+    if (from_eye_) {
         const float scale = std::tan(radians(camera.fov_degrees) / 2);
-        origin_ = glm::mat3(0);
         direction_ = axes * glm::mat3(scale, 0, 0, 0, scale, 0, 0, 0, 1) * screen;
     } else {
         origin_ = axes * glm::mat3(1, 0, 0, 0, 1, 0, 0, 0, 0) * screen;
@@ -37,7 +37,8 @@ CameraRays::CameraRays(const Camera& camera) {
 
 kernel::Ray CameraRays::operator()(const glm::vec2& pixel) const {
     const glm::vec3 film(pixel, 1);
-    return {eye_ + origin_ * film, glm::normalize(direction_ * film)};
+    const glm::vec3 direction = glm::normalize(direction_ * film);
+    return {from_eye_ ? eye_ : eye_ + origin_ * film, direction};
 }
 
 double Camera::seen_length(const glm::dvec3& a, const glm::dvec3& b) const {

@@ -34,6 +34,7 @@ class CameraRays {
   private:
     // A ray starts at eye + origin·(x, y) and runs along direction·(x, y, 1); one of the two
     // matrices does not vary with the pixel.
+    bool from_eye_; ///< as all rays of a perspective do
     glm::vec3 eye_, forward_;
     glm::mat3 origin_, direction_;
 };

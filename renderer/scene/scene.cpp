@@ -100,7 +100,19 @@ Frame Scene::shading_frame(const Surface& surface, const kernel::Hit& hit) const
 }
 
 std::optional<SurfacePoint> Scene::intersect(const kernel::Ray& ray) const {
-    const std::optional<kernel::Hit> hit = kernel_->intersect(ray);
+    return surface_point(kernel_->intersect(ray));
+}
+
+kernel::Packet<std::optional<SurfacePoint>>
+Scene::intersect(std::span<const kernel::Ray> rays) const {
+    const kernel::Packet<std::optional<kernel::Hit>> hits = kernel_->intersect(rays);
+    kernel::Packet<std::optional<SurfacePoint>> points;
+    for (size_t i = 0; i < rays.size(); ++i)
+        points[i] = surface_point(hits[i]);
+    return points;
+}
+
+std::optional<SurfacePoint> Scene::surface_point(const std::optional<kernel::Hit>& hit) const {
     if (!hit)
         return std::nullopt;
     const Surface& surface = surfaces_[hit->geometry];

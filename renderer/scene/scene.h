@@ -66,6 +66,8 @@ class Scene {
           std::vector<std::shared_ptr<Light>> lights);
 
     std::optional<SurfacePoint> intersect(const kernel::Ray& ray) const;
+    /// The same of rays that lie close together; at most a packet of them.
+    kernel::Packet<std::optional<SurfacePoint>> intersect(std::span<const kernel::Ray> rays) const;
     /// Share of the light of `light` that passes from there to `from`, `distance` along unit
     /// `direction`: 0 where something opaque stands between, the product of unscattered beams
     /// through cloths; through explicit fibres 1 where the ray meets none. After `kMaxLayers`
@@ -96,6 +98,7 @@ class Scene {
 
   private:
     void light_up();
+    std::optional<SurfacePoint> surface_point(const std::optional<kernel::Hit>& hit) const;
     Frame shading_frame(const Surface& surface, const kernel::Hit& hit) const;
 
     std::vector<Surface> surfaces_;

@@ -41,9 +41,6 @@ TEST(KernelScene, FindsTheNearestTriangleAndWhereItIsHit) {
     EXPECT_EQ(scene.intersect(up)->geometric_normal, glm::vec3(0, 0, 1));
     EXPECT_EQ(scene.intersect({up.org, up.dir, 1.5f})->geometry, 1u);
     EXPECT_FALSE(scene.intersect({up.org, up.dir, 0, 0.5f}));
-    EXPECT_TRUE(scene.occluded(up));
-    EXPECT_TRUE(scene.occluded({up.org, up.dir, 1.5f}));
-    EXPECT_FALSE(scene.occluded({up.org, up.dir, 1.5f, 2.5f}));
     EXPECT_EQ(scene.bounds().first, glm::vec3(0));
     EXPECT_EQ(scene.bounds().second, glm::vec3(1, 1, 2));
 }
@@ -60,7 +57,11 @@ TEST(KernelScene, RaysThatAreNoneMiss) {
                            Ray{{0, 0, 1e30f}, down}, Ray{org, {0, 0, -kInfinity}},
                            Ray{org, down, 2, 1}, Ray{org, down, 0, -1}, Ray{org, {0, 0, 0}}}) {
         EXPECT_FALSE(scene.intersect(ray));
-        EXPECT_FALSE(scene.occluded(ray));
+        // In a packet they do not disturb their neighbours.
+        const auto met = scene.intersect(std::vector{Ray{org, down}, ray, Ray{org, down}});
+        EXPECT_TRUE(met[0] && met[2]);
+        EXPECT_FALSE(met[1]);
+        EXPECT_FALSE(met[3]);
     }
 }
 
@@ -82,8 +83,53 @@ TEST(KernelScene, NothingSlipsThroughSharedEdges) {
         const glm::vec3& spoke = positions[1 + i % kSpokes];
         const glm::vec3 target = glm::mix(positions[0], spoke, 0.05f + 0.9f * rng.uniform_float());
         const glm::vec3 from(rng.uniform_float() - 0.5f, rng.uniform_float() - 0.5f, 1);
-        EXPECT_TRUE(scene.intersect({from, target - from})) << i;
+        const Ray ray{from, target - from};
+        EXPECT_TRUE(scene.intersect(ray)) << i;
+        EXPECT_TRUE(scene.intersect(std::span(&ray, 1))[0]) << i;
     }
+}
+
+// By whichever way, the same triangle at the same place; but for ties, which random rays have none
+// of.
+TEST(KernelScene, APacketMeetsWhatItsRaysMeetAlone) {
+    CounterRng rng(0, Purpose::test, 0, 0);
+    const auto anywhere = [&] {
+        const float x = rng.uniform_float(), y = rng.uniform_float();
+        return glm::vec3(x, y, rng.uniform_float());
+    };
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (uint32_t i = 0; i < 300; i += 3) {
+        const glm::vec3 corner = anywhere();
+        for (int k = 0; k < 3; ++k)
+            positions.push_back(corner + 0.2f * anywhere());
+        triangles.push_back({i, i + 1, i + 2});
+    }
+    Scene scene;
+    scene.add_triangles(positions, triangles);
+    scene.commit();
+    int met = 0;
+    for (int packet = 0; packet < 2000; ++packet) {
+        std::vector<Ray> rays(1 + packet % kernel::Packet<Ray>{}.size());
+        for (Ray& ray : rays) { // some of one bundle, some in all directions
+            ray.org = 3.0f * anywhere() - 1.0f;
+            ray.dir = packet % 2 == 0 ? glm::vec3(0.5f) - ray.org : anywhere() - 0.5f;
+        }
+        const auto hits = scene.intersect(rays);
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const auto alone = scene.intersect(rays[i]);
+            ASSERT_EQ(hits[i].has_value(), alone.has_value());
+            if (!alone)
+                continue;
+            ++met;
+            EXPECT_EQ(hits[i]->primitive, alone->primitive);
+            EXPECT_NEAR(hits[i]->t, alone->t, 1e-5f * alone->t);
+            EXPECT_NEAR(hits[i]->u, alone->u, 1e-4f);
+            EXPECT_NEAR(hits[i]->v, alone->v, 1e-4f);
+            EXPECT_NEAR(glm::dot(hits[i]->geometric_normal, alone->geometric_normal), 1, 1e-5f);
+        }
+    }
+    EXPECT_GT(met, 1000);
 }
 
 TEST(KernelScene, EmptyScenesAndMeshesAreNoTrouble) {
@@ -91,7 +137,6 @@ TEST(KernelScene, EmptyScenesAndMeshesAreNoTrouble) {
     scene.add_triangles({}, {});
     scene.commit();
     EXPECT_FALSE(scene.intersect({{0, 0, 0}, {0, 0, 1}}));
-    EXPECT_FALSE(scene.occluded({{0, 0, 0}, {0, 0, 1}}));
     const std::vector<glm::uvec3> beyond{{0, 1, 4}};
     EXPECT_THROW(scene.add_triangles(kSquare, beyond), std::invalid_argument);
 }

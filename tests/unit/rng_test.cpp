@@ -25,7 +25,7 @@ TEST(CounterRng, IsAFunctionOfItsArguments) {
     const uint64_t high = uint64_t{1} << 32;
     std::set<std::pair<uint32_t, uint32_t>> firsts;
     for (const uint64_t seed : {uint64_t{0}, uint64_t{1}, high})
-        for (const Purpose purpose : {Purpose::pixel, Purpose::incident_path, Purpose::scramble})
+        for (const Purpose purpose : {Purpose::pixel, Purpose::incident_path, Purpose::walk})
             for (const uint64_t index : {uint64_t{0}, uint64_t{1}, high})
                 for (const uint64_t sample : {uint64_t{0}, uint64_t{1}, high}) {
                     CounterRng rng(seed, purpose, index, sample);

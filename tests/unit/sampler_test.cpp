@@ -49,19 +49,19 @@ TEST(Sobol, FirstPointsAreThePublishedOnes) {
     const double expected[][2] = {{0, 0},         {0.5, 0.5},     {0.25, 0.75},   {0.75, 0.25},
                                   {0.125, 0.625}, {0.625, 0.125}, {0.375, 0.375}, {0.875, 0.875}};
     for (uint32_t i = 0; i < 8; ++i) {
-        EXPECT_EQ(sobol::first_dimension(i) * 0x1p-32, expected[i][0]) << i;
-        EXPECT_EQ(sobol::second_dimension(i) * 0x1p-32, expected[i][1]) << i;
+        EXPECT_EQ(sobol::reverse_bits(sobol::first_dimension(i)) * 0x1p-32, expected[i][0]) << i;
+        EXPECT_EQ(sobol::reverse_bits(sobol::second_dimension(i)) * 0x1p-32, expected[i][1]) << i;
     }
 }
 
-TEST(Sobol, ScramblingIsABijectionThatLooksOnlyUpwards) {
+TEST(Sobol, ScramblingIsABijectionThatLooksOnlyUpwards) { // bits are in reverse
     for (const uint32_t seed : {0u, 1u, 0xDEADBEEFu})
-        for (int bits = 1; bits <= 10; ++bits) { // numbers with equal top bits keep equal ones
+        for (int bits = 1; bits <= 10; ++bits) { // equal top bits keep equal ones
             std::set<uint32_t> tops;
             for (uint32_t top = 0; top < 1u << bits; ++top) {
-                const uint32_t x = top << (32 - bits);
-                const uint32_t scrambled = sobol::owen_scramble(x, seed) >> (32 - bits);
-                EXPECT_EQ(scrambled, sobol::owen_scramble(x | 1, seed) >> (32 - bits));
+                const uint32_t mask = (1u << bits) - 1;
+                const uint32_t scrambled = sobol::owen_scramble(top, seed) & mask;
+                EXPECT_EQ(scrambled, sobol::owen_scramble(top | 1u << 31, seed) & mask);
                 tops.insert(scrambled);
             }
             EXPECT_EQ(tops.size(), size_t{1} << bits);
