@@ -55,7 +55,7 @@ CHARTS = {
     "segments": ("segments to a fibre of the repeat", "log", {
         "segments": ("Straight segments against the smooth fibre", (RMS, "log"))}),
     "sides": ("repeats of the draft along both yarns", "log", {
-        "sides": ("Extended cells", (RMS + ", without noise", "linear"))}),
+        "sides": ("Extended cells against unrounded twist", (RMS + ", without noise", "linear"))}),
     "shear": ("shear [°]", "linear", {
         "shear": ("Sheared cloth against rules for its table", (RMS + ", without noise", "linear"))}),
     "highlights": ("angle of exit along the warp [°]", "linear", {
