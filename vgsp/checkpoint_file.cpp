@@ -8,9 +8,10 @@
 namespace rapport {
 namespace {
 
-/// All by which one run is told from another.
+/// All by which one run is told from another. How far it may go is none of it.
 nlohmann::json identity(const BsdfTable& table) {
     nlohmann::json run = table.metadata;
+    run.erase("max_paths");
     auto& incident = run["incident directions"] = nlohmann::json::array();
     for (const IncidentDirection& from : table.incident)
         incident.push_back({from.side == Side::front ? "front" : "back", from.theta, from.phi});

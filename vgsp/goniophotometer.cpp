@@ -70,12 +70,21 @@ class Run {
     uint64_t most_paths() const {
         return settings_.max_paths > 0 ? settings_.max_paths : kMostPaths;
     }
-    /// How many paths each direction gets.
+    /// Of the paths planned for a direction those that it gets.
+    uint64_t allowed(uint64_t planned) const { return std::min(planned, most_paths()); }
+    uint64_t all_allowed(std::span<const uint64_t> planned) const {
+        return std::transform_reduce(planned.begin(), planned.end(), uint64_t{0}, std::plus{},
+                                     [this](uint64_t paths) { return allowed(paths); });
+    }
+    bool out_of_paths(std::span<const uint64_t> planned) const {
+        return std::ranges::max(planned) > most_paths();
+    }
+    /// How many paths each direction should get.
     std::vector<uint64_t>
     plan(const std::function<void(const GoniophotometerProgress&)>& progress) const;
     /// More of them for the directions that have had theirs and claim a larger ε than was asked.
     void extend(std::vector<uint64_t>& planned, const std::vector<PathTally>& tallies) const;
-    /// Of all that is planned.
+    /// Of all that is planned and allowed.
     double share_done(std::span<const uint64_t> planned,
                       const std::vector<PathTally>& tallies) const;
     /// Adds the batches of paths [first, until) of a direction, in all groups of bands.
@@ -137,7 +146,8 @@ Run::plan(const std::function<void(const GoniophotometerProgress&)>& progress) c
         tasks.clear();
         for (size_t d = 0; d < planned.size(); ++d) {
             const uint64_t done = paths(pilots, d), until = std::max(kPilotPaths, 2 * done);
-            if (done == 0 || until <= std::min(kMostPilotPaths, planned[d] / kPlannedPerPilotPath))
+            if (done == 0 ||
+                until <= std::min(kMostPilotPaths, allowed(planned[d]) / kPlannedPerPilotPath))
                 add_tasks(tasks, d, kFirstPilotPath + done, kFirstPilotPath + until);
         }
         const size_t wave = kFirstWave * thread_count();
@@ -152,20 +162,22 @@ Run::plan(const std::function<void(const GoniophotometerProgress&)>& progress) c
             planned[d] = kBatchPaths;
             for (const PathTally& pilot : of_direction(pilots, d))
                 planned[d] = std::max(planned[d], paths_needed(pilot, settings_.accuracy));
-            planned[d] = std::min(most_paths(), planned[d]);
         }
     } while (!tasks.empty() && !out_of_time());
     return planned;
 }
 
 void Run::extend(std::vector<uint64_t>& planned, const std::vector<PathTally>& tallies) const {
-    for (size_t d = 0; d < planned.size(); ++d)
+    for (size_t d = 0; d < planned.size(); ++d) {
+        if (paths(tallies, d) < planned[d])
+            continue;
         for (const PathTally& tally : of_direction(tallies, d)) {
             if (tally.accuracy() <= settings_.accuracy)
                 continue;
             const uint64_t batches = paths_needed(tally, settings_.accuracy) / kBatchPaths + 1;
-            planned[d] = std::min(most_paths(), std::max(planned[d], batches * kBatchPaths));
+            planned[d] = std::min(kMostPaths, std::max(planned[d], batches * kBatchPaths));
         }
+    }
 }
 
 void Run::trace(std::span<const Task> tasks, std::vector<PathTally>& tallies) const {
@@ -238,10 +250,10 @@ double Run::save(const std::vector<uint64_t>& planned,
 
 double Run::share_done(std::span<const uint64_t> planned,
                        const std::vector<PathTally>& tallies) const {
-    double done = 0;
+    uint64_t done = 0;
     for (size_t d = 0; d < planned.size(); ++d)
-        done += static_cast<double>(paths(tallies, d));
-    return done / std::accumulate(planned.begin(), planned.end(), 0.0);
+        done += std::min(paths(tallies, d), allowed(planned[d]));
+    return static_cast<double>(done) / static_cast<double>(all_allowed(planned));
 }
 
 /// Wave after wave, all directions advance by the same share of what is planned for them. How
@@ -261,14 +273,14 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
     double wave = static_cast<double>(kFirstWave * thread_count());
     for (bool first = true; share < 1 && (first || !time_is_up()); first = false) {
         const double wave_since = seconds();
-        const double total = std::accumulate(planned.begin(), planned.end(), 0.0);
+        const auto total = static_cast<double>(all_allowed(planned));
         share = std::min(1.0, share + wave * kBatchPaths / total);
         std::vector<Task> tasks;
         for (size_t d = 0; d < planned.size(); ++d) {
-            const double wanted = std::ceil(share * static_cast<double>(planned[d]) / kBatchPaths);
+            const uint64_t most = allowed(planned[d]);
+            const double wanted = std::ceil(share * static_cast<double>(most) / kBatchPaths);
             const uint64_t until =
-                share == 1 ? planned[d]
-                           : std::min(planned[d], static_cast<uint64_t>(wanted) * kBatchPaths);
+                share == 1 ? most : std::min(most, static_cast<uint64_t>(wanted) * kBatchPaths);
             add_tasks(tasks, d, paths(tallies, d), until);
         }
         trace(tasks, tallies);
@@ -277,7 +289,7 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
             share = share_done(planned, tallies);
         }
         const double took = seconds() - wave_since;
-        const double saving = share < 1 ? save(planned, tallies) : 0;
+        const double saving = share < 1 || out_of_paths(planned) ? save(planned, tallies) : 0;
         if (progress)
             progress(state(tallies, share));
         const double wanted = std::max(1.0, kWorkPerSaving * saving);
@@ -291,6 +303,7 @@ Run::measure(const std::function<void(const GoniophotometerProgress&)>& progress
     }
     GoniophotometerCounts counts = write(tallies);
     counts.out_of_time = share < 1;
+    counts.out_of_paths = share == 1 && out_of_paths(planned);
     return counts;
 }
 

@@ -35,9 +35,11 @@ struct GoniophotometerProgress {
 /// Where the paths of one run went, over all incident directions; the pilot's are not in it.
 struct GoniophotometerCounts {
     uint64_t paths = 0, events = 0, overlaps = 0;
-    uint64_t capped = 0;      ///< out of events
-    uint64_t lost = 0;        ///< of these, lost among the fibres (FibreTracer::Flight::lost)
-    bool out_of_time = false; ///< more were planned: the checkpoint is worth going on from
+    uint64_t capped = 0; ///< out of events
+    uint64_t lost = 0;   ///< of these, lost among the fibres (FibreTracer::Flight::lost)
+    /// By which of its bounds the run ended before all that was planned: the checkpoint is worth
+    /// going on from.
+    bool out_of_time = false, out_of_paths = false;
 };
 
 /// Measures the scattering of any periodic assembly of fibres for the incident directions and
@@ -64,7 +66,8 @@ struct GoniophotometerCounts {
 ///
 /// The pilot is the checkpoint's first increment. A checkpoint knows the run that it belongs to by
 /// `table.metadata`, which must tell all that decides the result, and the incident directions:
-/// FileError for one of another run.
+/// FileError for one of another run. A run with another bound on its paths ("max_paths" in the
+/// metadata) is the same run: it goes on to more of what was planned.
 ///
 /// Throws std::invalid_argument for optics or settings outside their domain, and Stopped when told
 /// to stop.

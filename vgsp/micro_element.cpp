@@ -151,6 +151,19 @@ double checked_memory(double segments, const char* bound, const MicroElement& el
     return memory;
 }
 
+/// The fibres' cylinders; refused where chance or twist bends one too sharply for any.
+std::vector<kernel::FibreSegment> cylinders(const kernel::FibreAssembly& fibres,
+                                            const std::string& path, const StopSignal& stopped) {
+    try {
+        return kernel::fibre_segments(fibres, stopped);
+    } catch (const std::invalid_argument& bend) {
+        throw FileError(path, "deviation_degrees",
+                        "fibres that bend no more sharply than they are thick (less deviation or "
+                        "twist, or more migration_um)",
+                        bend.what());
+    }
+}
+
 std::optional<double> mass_of(const kernel::FibreAssembly& assembly,
                               const std::vector<kernel::FibreSegment>& segments,
                               const Cloth& cloth) {
@@ -207,7 +220,7 @@ MicroElement build_micro_element(const Cloth& cloth, const MicroElementOptions& 
         element.segments += chain.points.size();
     element.memory = checked_memory(double(element.segments), "", element, cloth, ends, picks);
     const std::vector<kernel::FibreSegment> segments =
-        kernel::fibre_segments(element.fibres, options.stopped);
+        cylinders(element.fibres, path, options.stopped);
     element.overlap_fraction = overlap_fraction(element.fibres, segments, options.stopped);
     element.mass_g_per_m2 = mass_of(element.fibres, segments, cloth);
     element.warp_cover = 2 * warp.mean_half_width() / warp.spacing;

@@ -37,7 +37,8 @@ struct MicroElementOptions {
     bool dither = true;          ///< shift each fibre's joints along it at random
     uint64_t seed = 0;
     /// Repeats of the draft along both yarns that the cell has at least: the paper's extended
-    /// micro-element. The longer the cell, the less twist is rounded to close.
+    /// micro-element. Over all of the cell twist is rounded by half a step of the packing at most:
+    /// the less, the longer the cell, and not at all where it closes there.
     int least_repeats = 1;
     StopSignal stopped{}; ///< asked before each fibre is wound
 };

@@ -179,7 +179,7 @@ void run(const VgspOptions& options, const CommonOptions& common) {
     const ClothMeasurement result = measure_cloth(cloth, measure, watch);
     line.end();
     write_table(result.table, output);
-    if (!result.counts.out_of_time)
+    if (!result.counts.out_of_time && !result.counts.out_of_paths)
         std::filesystem::remove(measure.checkpoint.path);
     if (common.quiet)
         return;
@@ -188,7 +188,9 @@ void run(const VgspOptions& options, const CommonOptions& common) {
     fmt::print("{}: accuracy {:.4f} on {} bins, {} incident directions, {} paths{}\n{}\n",
                output.string(), table.largest_accuracy(), 2 * table.exits.bins(),
                table.directions(), result.counts.paths,
-               result.counts.out_of_time ? ", out of time; --resume goes on" : "",
+               result.counts.out_of_time    ? ", out of time; --resume goes on"
+               : result.counts.out_of_paths ? ", out of rays; --resume with more goes on"
+                                            : "",
                error_text(table.largest_error()));
 }
 
@@ -238,7 +240,8 @@ void add_vgsp_command(CLI::App& app, const CommonOptions& common) {
         ->check(CLI::Range(1, 1024));
     command
         ->add_option("--max-rays", options->settings.max_paths,
-                     "Incident paths per direction at most")
+                     "Incident paths per direction at most; where more were wanted, OUTPUT.part is "
+                     "kept for --resume")
         ->check(whole_number(1));
     command
         ->add_option("--max-time", options->settings.max_seconds,

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What accuracy a measurement is asked for, reaches, and costs: for each cloth and accuracy the worst
-direction's ε, how many of the directions claim more than was asked, and the paths spent over the ideal
-number, Σ ε²·N/asked² with each direction's ε² of the same run. Two programs are compared side by side.
+direction's ε, how many of the directions claim more than was asked, the paths spent on each in the mean,
+in units of 1/asked², and over the ideal number, ε²·N/asked² with each direction's ε² of the same run.
+Two programs are compared side by side.
 
     python3 tests/bench/accuracy.py build/release/rapport [ANOTHER_RAPPORT]
 """
@@ -24,8 +25,8 @@ def measured(program, cloth, asked):
 
 def main():
     folder = pathlib.Path(__file__).resolve().parents[2] / "scenes" / "cloths"
-    print("| cloth | program | asked | reached | directions above | paths | over the ideal |")
-    print("|---|---|---|---|---|---|---|")
+    print("| cloth | program | asked | reached | directions above | paths | a direction's ε²·paths | over the ideal |")
+    print("|---|---|---|---|---|---|---|---|")
     for cloth in CLOTHS:
         for asked in ASKED:
             for program in sys.argv[1:]:
@@ -35,7 +36,8 @@ def main():
                 ideal = sum(n * (e / asked) ** 2 for n, e in zip(paths, reached))
                 print(f"| `{cloth}` | {program} | {asked} | {max(reached):.3f} "
                       f"| {sum(e > asked for e in reached)} of {len(reached)} "
-                      f"| {sum(paths):,} | {sum(paths) / ideal:.2f} |", flush=True)
+                      f"| {sum(paths):,} | {sum(paths) * asked**2 / len(paths):,.0f} "
+                      f"| {sum(paths) / ideal:.2f} |", flush=True)
 
 
 if __name__ == "__main__":

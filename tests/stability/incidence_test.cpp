@@ -1,7 +1,7 @@
 #include "vgsp/goniophotometer.h"
 
 #include "tests/support/long_run.h"
-#include "tests/support/stability.h"
+#include "tests/support/union_of_disks.h"
 
 #include <gtest/gtest.h>
 
@@ -57,19 +57,30 @@ TEST(Grazing, IsContinuous) {
     EXPECT_LT(shares.back().unscattered, 0.01);
 }
 
-/// Fibres in zigzag, half of whose segments have the direction of the light exactly.
-kernel::FibreAssembly zigzag() {
-    kernel::FibreAssembly assembly{{80, 30}, {}};
-    for (const double y : {5.0, 15.0, 25.0})
-        assembly.chains.push_back({{{0, y, -20}, {40, y, 20}}, {80, 0, 0}, 4, 0});
-    return assembly;
+/// Parallel fibres against every disk asked in double precision, which tells the last two
+/// directions apart.
+TEST(Grazing, IsWhatDoublePrecisionTells) {
+    const tests::ParallelFibres fibres = tests::parallel_fibres();
+    Shares before{};
+    for (const double theta : kTowardsTheHorizon) {
+        SCOPED_TRACE(testing::Message() << "θ " << theta << "°");
+        const Shares shares = tests::measure_shares(
+            fibres.assembly(), kClear, {Side::front, radians(theta), 0}, {.paths = kPaths});
+        const Shares expected = tests::UnionOfDisks(fibres).shares(radians(theta), kPaths);
+        tests::expect_close(shares, expected);
+        if (theta == kTowardsTheHorizon.back()) {
+            EXPECT_GT(expected.reflected - before.reflected,
+                      tests::noise_of_difference(expected, before));
+        }
+        before = shares;
+    }
 }
 
 TEST(SpecialBeam, AlongAFibre) {
     const double theta = radians(45.0);
     for (const double phi : {0.0, kPi}) {
         const std::vector<Shares> shares =
-            tests::measure_shares(zigzag(), kClear,
+            tests::measure_shares(tests::zigzag(), kClear,
                                   {{Side::front, theta, phi},
                                    {Side::front, std::nextafter(theta, 1.0), phi},
                                    {Side::front, theta + 1e-9, phi},
@@ -85,7 +96,7 @@ TEST(SpecialBeam, AlongAFibre) {
 
 TEST(SpecialBeam, ExactlyNormal) {
     for (const kernel::FibreAssembly& assembly :
-         {tests::fibre_stack(3, 12, 4.6, 2), tests::winding_fibres(), zigzag()}) {
+         {tests::fibre_stack(3, 12, 4.6, 2), tests::winding_fibres(), tests::zigzag()}) {
         const std::vector<Shares> shares = tests::measure_shares(assembly, kClear,
                                                                  {{Side::front, 0, 0},
                                                                   {Side::front, 0, kPi / 2},
@@ -109,19 +120,11 @@ TEST(SpecialBeam, InThePlaneThatDividesBins) {
                                                            {Side::front, radians(30.0), kPi},
                                                            {Side::front, radians(30.0), 1e-5}});
     measure(tracer, std::vector{kClear}, {.accuracy = 1e-6, .max_paths = kPaths}, table);
-    const DirectionMesh& mesh = table.exits;
-    for (size_t d = 0; d < table.directions(); ++d)
-        for (const int block : {0, 1}) {
-            double beside = 0, total = 0;
-            for (size_t bin = 0; bin < mesh.bins(); ++bin) {
-                const double flux = table.at(d, block, bin, 0) * table.exits_of(d).solid_angle(bin);
-                const DirectionMesh::Bounds bounds = mesh.bounds(bin);
-                total += flux;
-                beside += bounds.u_low == 0 || bounds.u_high == 0 ? flux : 0;
-            }
-            EXPECT_GT(total, 0.05);
-            EXPECT_NEAR(beside, total, 1e-6);
-        }
+    for (size_t d = 0; d < table.directions(); ++d) {
+        EXPECT_GT(table.reflectance(d)[0], 0.05);
+        EXPECT_GT(table.transmittance(d)[0], 0.05);
+        EXPECT_LT(tests::share_off_plane(table, d), 1e-6);
+    }
 }
 
 } // namespace

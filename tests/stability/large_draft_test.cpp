@@ -1,10 +1,9 @@
 #include "vgsp/micro_element.h"
 
 #include "renderer/core/error.h"
+#include "tests/support/large_draft.h"
 #include "tests/support/long_run.h"
 #include "tests/support/peak_memory.h"
-#include "tests/support/scattering.h"
-#include "vgsp/weave.h"
 
 #include <gtest/gtest.h>
 
@@ -16,33 +15,13 @@ namespace {
 
 constexpr double kMostMemory = 4e9;
 
-/// A draft that repeats nowhere: each end passes under one pick of twelve, at places that a
-/// generator scatters.
-Draft scattered_draft(int size) {
-    Draft draft = tiled(named_weave("plain"), size, size);
-    CounterRng rng(1, Purpose::test, 0, 0);
-    for (int pick = 0; pick < size; ++pick)
-        for (int end = 0; end < size; ++end)
-            draft.set_up(end, pick, rng.uniform() > 1.0 / 12);
-    return draft;
-}
-
-/// Yarns of one smooth fibre, so loosely woven that they turn little.
-Cloth monofilament_cloth(int size) {
-    YarnSpec yarn = tests::loose_yarn(60, 58);
-    yarn.fibres = 1;
-    return tests::cloth_of(scattered_draft(size), yarn, yarn, 25, 25);
-}
-
 TEST(LargeDraft, IsMeasuredWithinTheMemoryPromised) {
     const int size = tests::long_run() ? 600 : 150;
-    const Cloth cloth = monofilament_cloth(size);
+    const Cloth cloth = tests::monofilament_cloth(size);
     const double before = tests::peak_memory();
     const MicroElement element = build_micro_element(cloth);
     EXPECT_EQ(element.fibres.chains.size(), 2u * size);
-    const double promised = kernel::FibreTracer::memory(double(element.segments),
-                                                        element.fibres.cell, element.thickness_um) +
-                            double(element.segments) * sizeof(glm::dvec3);
+    const double promised = tests::promised_memory(element);
     EXPECT_LT(promised, kMostMemory);
 
     const kernel::FibreTracer tracer(element.fibres);
@@ -61,7 +40,7 @@ TEST(LargeDraft, IsMeasuredWithinTheMemoryPromised) {
 }
 
 TEST(LargeDraft, IsRefusedWithWhatItWouldTake) {
-    Cloth cloth = monofilament_cloth(600);
+    Cloth cloth = tests::monofilament_cloth(600);
     for (YarnSpec* yarn : {&cloth.warp, &cloth.weft}) {
         yarn->fibres = 37;
         yarn->width_um = yarn->height_um = 120;

@@ -1,7 +1,7 @@
 #include "vgsp/goniophotometer.h"
 
 #include "tests/support/long_run.h"
-#include "tests/support/stability.h"
+#include "tests/support/union_of_disks.h"
 
 #include <gtest/gtest.h>
 
@@ -47,6 +47,25 @@ TEST(Absorption, FromNoneToMoreThanLightCanCross) {
     EXPECT_NEAR(black.unscattered, clear.unscattered, 3.5 * std::sqrt(2.0) * black.error());
 }
 
+Shares of_parallel_fibres(double index, double absorption) {
+    return tests::measure_shares(tests::parallel_fibres().assembly(), {index, {absorption}, 0},
+                                 {Side::front, kIncident.theta, 0}, {.paths = kPaths});
+}
+/// The same by asking every disk in double precision.
+Shares of_disks(double index, double absorption) {
+    return tests::UnionOfDisks(tests::parallel_fibres(), index, absorption)
+        .shares(kIncident.theta, kPaths);
+}
+
+TEST(Absorption, IsWhatDoublePrecisionTells) {
+    for (const double sigma : {1e-6, 1e-2, 1e-1, 1.0, 1e6}) {
+        SCOPED_TRACE(testing::Message() << "σ " << sigma << "/µm");
+        tests::expect_close(of_parallel_fibres(1.53, sigma), of_disks(1.53, sigma));
+    }
+    const Shares more = of_parallel_fibres(1.53, 1e-1), less = of_disks(1.53, 7e-2);
+    EXPECT_GT(less.transmitted - more.transmitted, tests::noise_of_difference(more, less));
+}
+
 TEST(Absorption, AtTheSurfaceFromNoneToAll) {
     double before = shares({1.53, {0}, 0}).reflected;
     for (const double share : {1e-15, 1e-6, 0.01, 0.5, 0.999, 1 - 1e-16, 1.0}) {
@@ -79,6 +98,15 @@ TEST(RefractiveIndex, FromAirToDiamond) {
         before = each.reflected;
     }
     EXPECT_GT(before, 0.5);
+}
+
+TEST(RefractiveIndex, IsWhatDoublePrecisionTells) {
+    for (const double over_one : {1e-9, 1e-4, 1e-2, 0.3, 1.5, 3.0}) {
+        SCOPED_TRACE(testing::Message() << "index 1 + " << over_one);
+        tests::expect_close(of_parallel_fibres(1 + over_one, 0), of_disks(1 + over_one, 0));
+    }
+    const Shares more = of_parallel_fibres(2.5, 0), less = of_disks(2.2, 0);
+    EXPECT_GT(more.reflected - less.reflected, tests::noise_of_difference(more, less));
 }
 
 /// From less than counts to facets that mostly stand upright, of any index.

@@ -17,17 +17,6 @@ const uint64_t kPaths = tests::long_run() ? 500'000 : 20'000;
 const FibreOptics kClear{1.53, {0}, 0};
 const IncidentDirection kIncident{Side::front, radians(40.0), radians(70.0)};
 
-FibreAssembly scaled(FibreAssembly assembly, double scale) {
-    assembly.cell *= scale;
-    for (kernel::FibreChain& chain : assembly.chains) {
-        for (glm::dvec3& point : chain.points)
-            point *= scale;
-        chain.period *= scale;
-        chain.radius *= scale;
-    }
-    return assembly;
-}
-
 Shares shares(const FibreAssembly& assembly, uint64_t seed = 0) {
     const Shares result =
         tests::measure_shares(assembly, kClear, kIncident, {.paths = kPaths, .seed = seed});
@@ -40,7 +29,7 @@ TEST(Scale, FromAThousandthToAThousandTimes) {
     const Shares reference = shares(tests::winding_fibres());
     for (const double scale : {1e-3, 1e-2, 0.1, 10.0, 100.0, 1e3}) {
         SCOPED_TRACE(testing::Message() << "scale " << scale);
-        tests::expect_close(shares(scaled(tests::winding_fibres(), scale), 1), reference);
+        tests::expect_close(shares(tests::scaled(tests::winding_fibres(), scale), 1), reference);
     }
 }
 

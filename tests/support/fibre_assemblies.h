@@ -1,5 +1,6 @@
 #pragma once
 
+#include "renderer/core/math.h"
 #include "renderer/kernel/fibres.h"
 
 // Assemblies of fibres for tests, all in µm.
@@ -59,6 +60,54 @@ inline kernel::FibreAssembly winding_fibres(const glm::dvec3& moved_by = glm::dv
     wind({5, 5, 22}, {60, 45, 0}, 2, 1.5, 0, 30);
     assembly.chains.push_back({{moved_by + glm::dvec3(0, 22, -2)}, {60, 0, 0}, 2.5, 0});
     return assembly;
+}
+
+/// Fibres in zigzag, half of whose segments have the direction of light from θ = 45°, φ = 0 or π
+/// exactly.
+inline kernel::FibreAssembly zigzag() {
+    kernel::FibreAssembly assembly{{80, 30}, {}};
+    for (const double y : {5.0, 15.0, 25.0})
+        assembly.chains.push_back({{{0, y, -20}, {40, y, 20}}, {80, 0, 0}, 4, 0});
+    return assembly;
+}
+
+inline kernel::FibreAssembly scaled(kernel::FibreAssembly assembly, double scale) {
+    assembly.cell *= scale;
+    for (kernel::FibreChain& chain : assembly.chains) {
+        for (glm::dvec3& point : chain.points)
+            point *= scale;
+        chain.period *= scale;
+        chain.radius *= scale;
+    }
+    return assembly;
+}
+
+/// Straight fibres along y that repeat along x.
+struct ParallelFibres {
+    std::vector<glm::dvec2> centres; ///< in x and z
+    double radius = 5, period = 40;
+
+    kernel::FibreAssembly assembly() const {
+        kernel::FibreAssembly assembly{{period, 20}, {}};
+        for (const glm::dvec2& centre : centres)
+            assembly.chains.push_back({{{centre.x, 0, centre.y}}, {0, 20, 0}, radius, 0});
+        return assembly;
+    }
+};
+
+/// Three, at different heights, that do not touch.
+inline ParallelFibres parallel_fibres() { return {{{8, -3}, {20, 4}, {33, 0}}}; }
+
+/// Two whose centres are a diameter less `overlap` of it apart, the line of centres at `kPairTilt`
+/// to the cloth.
+constexpr double kPairTilt = radians(30.0);
+inline ParallelFibres fibre_pair(double overlap) {
+    ParallelFibres fibres;
+    const glm::dvec2 middle(fibres.period / 2, 0);
+    const glm::dvec2 half =
+        fibres.radius * (1 - overlap) * glm::dvec2(std::cos(kPairTilt), std::sin(kPairTilt));
+    fibres.centres = {middle - half, middle + half};
+    return fibres;
 }
 
 } // namespace rapport::tests

@@ -46,6 +46,18 @@ inline Cloth twisted_cloth(int steps, double off = 0) {
     return cloth;
 }
 
+/// A plain weave whose outermost fibres are tilted by `tilt` against the axes of their yarns; S in
+/// the weft where `opposed`.
+inline Cloth tilted_cloth(double tilt, bool opposed = false) {
+    YarnSpec yarn = loose_yarn(90, 14);
+    yarn.section = YarnSection::twisted;
+    yarn.twist_per_m = 1e6 * std::tan(tilt) / (kPi * (90 - 14));
+    YarnSpec weft = yarn;
+    if (opposed)
+        weft.twist_per_m *= -1;
+    return cloth_of(named_weave("plain"), yarn, weft, 45, 45);
+}
+
 /// Fibres of two kinds, both clear.
 inline std::vector<FibreOptics> clear_fibres(double index = 1.53, size_t bands = 3) {
     const FibreOptics clear{index, std::vector<double>(bands, 0.0), 0};

@@ -64,9 +64,28 @@ inline Shares measure_shares(const kernel::FibreAssembly& assembly, const FibreO
     return measure_shares(assembly, optics, std::vector{incident}, options)[0];
 }
 
+/// Share of the scattered light that leaves in bins which do not touch the plane u = 0.
+inline double share_off_plane(const BsdfTable& table, size_t direction) {
+    double off = 0, total = 0;
+    for (const int block : {0, 1})
+        for (size_t bin = 0; bin < table.exits.bins(); ++bin) {
+            const double flux =
+                table.at(direction, block, bin, 0) * table.exits_of(direction).solid_angle(bin);
+            const DirectionMesh::Bounds bounds = table.exits.bounds(bin);
+            total += flux;
+            off += bounds.u_low == 0 || bounds.u_high == 0 ? 0 : flux;
+        }
+    return off / total;
+}
+
+/// By how much two shares may differ for their noise.
+inline double noise_of_difference(const Shares& a, const Shares& b) {
+    return 3.5 * std::hypot(a.error(), b.error());
+}
+
 /// Two values that should agree up to noise and `allowed`.
 inline void expect_close(const Shares& a, const Shares& b, double allowed = 0) {
-    const double noise = 3.5 * std::hypot(a.error(), b.error()) + allowed;
+    const double noise = noise_of_difference(a, b) + allowed;
     EXPECT_NEAR(a.reflected, b.reflected, noise);
     EXPECT_NEAR(a.transmitted, b.transmitted, noise);
     EXPECT_NEAR(a.unscattered, b.unscattered, noise);

@@ -31,25 +31,29 @@ class Checkpointed : public testing::Test {
     }
 
     /// Measures until the callback has been told of `increments`, or to the end.
-    BsdfTable run(int increments, bool resume, const BsdfTable& layout = empty_table()) {
+    BsdfTable run(int increments, bool resume, const BsdfTable& layout = empty_table(),
+                  uint64_t max_paths = 0) {
         BsdfTable table = layout;
+        table.metadata["max_paths"] = std::to_string(max_paths);
         increments_ = 0;
-        measure(tracers_, std::vector<FibreOptics>{{1.5, {0, 0.01, 0.1}, 0.01}},
-                {.accuracy = 0.2, .seed = 3}, table,
-                [&](const GoniophotometerProgress& state) {
-                    if (state.pilot)
-                        return;
-                    if (++increments_ == increments)
-                        throw Interruption();
-                    EXPECT_GE(state.seconds_left, 0);
-                    EXPECT_GT(state.paths_per_second, 0);
-                },
-                {folder_ / "table.part", resume}, {{"dark", {{0.1, 0.2, 0.3}}}});
+        counts_ = measure(tracers_, std::vector<FibreOptics>{{1.5, {0, 0.01, 0.1}, 0.01}},
+                          {.accuracy = accuracy_, .max_paths = max_paths, .seed = 3}, table,
+                          [&](const GoniophotometerProgress& state) {
+                              if (state.pilot)
+                                  return;
+                              if (++increments_ == increments)
+                                  throw Interruption();
+                              EXPECT_GE(state.seconds_left, 0);
+                              EXPECT_GT(state.paths_per_second, 0);
+                          },
+                          {folder_ / "table.part", resume}, {{"dark", {{0.1, 0.2, 0.3}}}});
         return table;
     }
 
     const tests::TemporaryFolder folder_;
     std::vector<kernel::FibreTracer> tracers_;
+    double accuracy_ = 0.2;
+    GoniophotometerCounts counts_;
     int increments_ = 0;
 };
 
@@ -97,6 +101,23 @@ TEST_F(Checkpointed, RunsThatAreInterruptedEndWithTheSameNumbers) {
     expect_same_numbers(run(0, false), uninterrupted);
 }
 
+/// In whole batches, and by the plan of an equally short pilot: as if there had been no bound.
+TEST_F(Checkpointed, RunsOutOfPathsGoOnWithMore) {
+    accuracy_ = 0.4;
+    const BsdfTable unbounded = run(0, false);
+    EXPECT_FALSE(counts_.out_of_paths);
+    ASSERT_GT(std::ranges::min(unbounded.paths), 10u * 1024);
+    const auto expect_bounded = [&](bool resume, uint64_t bound, uint64_t paths) {
+        EXPECT_EQ(run(0, resume, empty_table(), bound).paths, std::vector<uint64_t>(2, paths));
+        EXPECT_TRUE(counts_.out_of_paths);
+    };
+    expect_bounded(false, 3 * 1024, 3 * 1024);
+    expect_bounded(true, 10 * 1024, 10 * 1024);
+    expect_bounded(true, 2 * 1024, 10 * 1024);
+    expect_same_numbers(run(0, true), unbounded);
+    EXPECT_FALSE(counts_.out_of_paths);
+}
+
 TEST_F(Checkpointed, WhatBelongsToAnotherRunIsRefused) {
     EXPECT_THROW(run(1, false), Interruption);
     const auto refusal = [&](const BsdfTable& layout) -> std::string {
@@ -137,8 +158,8 @@ TEST(Command, AKilledMeasurementIsResumedToTheSameBytes) {
     const std::string killed = (folder / "killed.bsdf").string();
     const auto vgsp = [&](const std::string& output, unsigned killed_after) {
         return tests::run_and_kill_program({"vgsp", cloth, "--incidence", "30,20", "--side",
-                                            "front", "--accuracy", "1e-3", "--max-rays", "100000",
-                                            "--realisations", "2", "-o", output, "--resume"},
+                                            "front", "--accuracy", "0.12", "--realisations", "2",
+                                            "-o", output, "--resume"},
                                            killed_after);
     };
     vgsp(whole, 0);

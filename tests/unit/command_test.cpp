@@ -227,7 +227,7 @@ TEST_F(Command, MeasuresTellsAndExportsATable) {
     EXPECT_NEAR(sum, from["R"][0].get<double>() + from["T"][0].get<double>(), 1e-5);
 }
 
-TEST_F(Command, GoesOnWithAMeasurementThatRanOutOfTime) {
+TEST_F(Command, GoesOnWithAMeasurementThatRanOutOfTimeOrRays) {
     const std::filesystem::path table = folder_ / "plain.bsdf", part = folder_ / "plain.bsdf.part";
     std::vector<std::string> vgsp{"vgsp",
                                   kSource + "/scenes/cloths/viscose-plain.toml",
@@ -247,17 +247,22 @@ TEST_F(Command, GoesOnWithAMeasurementThatRanOutOfTime) {
         const tests::ProgramRun told = run_program({"info", table.string(), "--json"});
         return nlohmann::json::parse(told.out)["accuracy"].get<double>();
     };
-    std::vector<std::string> hurried = vgsp;
-    hurried.insert(hurried.end(), {"--max-time", "1e-3"});
-    const tests::ProgramRun first = run_program(hurried);
-    ASSERT_EQ(first.status, 0) << first.err;
-    EXPECT_NE(first.out.find("out of time"), std::string::npos) << first.out;
-    EXPECT_TRUE(std::filesystem::exists(part));
-    EXPECT_GT(accuracy(), 0.15);
-    vgsp.push_back("--resume");
-    EXPECT_EQ(run_program(vgsp).status, 0);
-    EXPECT_FALSE(std::filesystem::exists(part));
-    EXPECT_LE(accuracy(), 0.15);
+    std::vector<std::string> resumed = vgsp;
+    resumed.push_back("--resume");
+    const std::vector<std::pair<std::vector<std::string>, std::string>> bounds{
+        {{"--max-time", "1e-3"}, "out of time"}, {{"--max-rays", "2000"}, "out of rays"}};
+    for (const auto& [bound, told] : bounds) {
+        std::vector<std::string> bounded = vgsp;
+        bounded.insert(bounded.end(), bound.begin(), bound.end());
+        const tests::ProgramRun first = run_program(bounded);
+        ASSERT_EQ(first.status, 0) << first.err;
+        EXPECT_NE(first.out.find(told), std::string::npos) << first.out;
+        EXPECT_TRUE(std::filesystem::exists(part));
+        EXPECT_GT(accuracy(), 0.15);
+        EXPECT_EQ(run_program(resumed).status, 0);
+        EXPECT_FALSE(std::filesystem::exists(part));
+        EXPECT_LE(accuracy(), 0.15);
+    }
 }
 
 TEST_F(Command, RendersTheSamePixelsWithAnyThreadsAndDiffTellsThemApart) {

@@ -448,6 +448,12 @@ TEST(MicroElement, RefusesClothsThatCannotExist) {
         cloth.ends_per_cm = sett;
         EXPECT_NE(refusal(cloth).find("ends_per_cm"), std::string::npos);
     }
+    // Chance makes bends that the mean deviation does not tell of.
+    cloth = filament_cloth();
+    cloth.warp = parallel_yarn(7, 110, 110, 12);
+    cloth.warp.irregularity = {.migration_um = 24.1, .deviation_degrees = 45};
+    EXPECT_NE(refusal(cloth).find("silk.toml:deviation_degrees"), std::string::npos)
+        << refusal(cloth);
     cloth = filament_cloth();
     cloth.crimp_balance = 1.5;
     EXPECT_NE(refusal(cloth).find("crimp_balance"), std::string::npos);
