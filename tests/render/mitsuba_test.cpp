@@ -4,6 +4,7 @@
 #include "tests/support/file_bytes.h"
 #include "tests/support/long_run.h"
 #include "tests/support/run_program.h"
+#include "tests/support/shared_data.h"
 #include "tests/support/synthetic_tables.h"
 #include "tests/support/temporary_folder.h"
 
@@ -61,6 +62,32 @@ std::string hills() {
     return text;
 }
 
+/// The shared sheet of 199,712 triangles without its normals: where they are smooth, and light is
+/// on one side by them and on the other by the triangle, Mitsuba lets it through and we mirror it.
+std::string flat_sheet(const std::filesystem::path& path) {
+    const std::string file = tests::read_bytes(path), end = "end_header\n";
+    std::string header = file.substr(0, file.find(end) + end.size());
+    const char* vertex = file.data() + header.size();
+    const size_t vertices = std::stoul(header.substr(header.find("vertex ") + 7));
+    for (const std::string& name : {"nx", "ny", "nz"}) {
+        const std::string line = "property float " + name + "\n";
+        header.erase(header.find(line), line.size());
+    }
+    constexpr size_t kPosition = 12, kNormal = 12, kUv = 8;
+    for (size_t i = 0; i < vertices; ++i, vertex += kPosition + kNormal + kUv)
+        header.append(vertex, kPosition).append(vertex + kPosition + kNormal, kUv);
+    return header.append(vertex, file.data() + file.size());
+}
+
+/// A mesh, its triangles flat, under an even sky, and perhaps a sun.
+struct World {
+    std::string mesh;
+    glm::vec3 eye, centre;
+    float fov; ///< [degrees]
+    float sky; ///< radiance
+    float sun; ///< irradiance
+};
+
 class Mitsuba : public testing::Test {
   protected:
     void SetUp() override {
@@ -69,42 +96,54 @@ class Mitsuba : public testing::Test {
         tests::write_bytes(folder_ / "hills.ply", hills());
     }
 
-    Image by_mitsuba(const nlohmann::json& bsdf, int seed, int bounces = 1) {
+    Image by_mitsuba(const World& world, const nlohmann::json& bsdf, int seed, int bounces,
+                     const char* variant = "scalar_rgb") {
+        const auto list = [](const glm::vec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
+        const nlohmann::json scene{
+            {"mesh", world.mesh},      {"eye", list(world.eye)}, {"centre", list(world.centre)},
+            {"fov", world.fov},        {"sky", world.sky},       {"sun", list(kTowardsSun)},
+            {"irradiance", world.sun}, {"bsdf", bsdf},           {"bounces", bounces}};
         const std::string out = (folder_ / "mitsuba.exr").string();
-        const std::string command = fmt::format(
-            "python3 {}/tests/render/mitsuba_render.py {} '{}' {} {} {} {} {} >/dev/null",
-            RAPPORT_SOURCE_DIR, (folder_ / "hills.ply").string(), bsdf.dump(), out, kSize,
-            samples(), seed, bounces);
+        const std::string command =
+            fmt::format("python3 {}/tests/render/mitsuba_render.py {} '{}' {} {} {} {} >/dev/null",
+                        RAPPORT_SOURCE_DIR, variant, scene.dump(), out, kSize, samples(), seed);
         if (std::system(command.c_str()) != 0)
             throw std::runtime_error("Mitsuba failed: " + command);
         return read_exr(out);
+    }
+    /// The hills, directly lit.
+    Image by_mitsuba(const nlohmann::json& bsdf, int seed, const char* variant = "scalar_rgb") {
+        return by_mitsuba(hills_, bsdf, seed, 1, variant);
     }
 
     nlohmann::json measured(const std::string& file) const {
         return {{"type", "measured"}, {"filename", (folder_ / file).string()}};
     }
 
-    Image by_us(const std::string& material, int seed, int bounces = 1) {
+    Image by_us(const World& world, const std::string& material, int seed, int bounces) {
         const std::string out = (folder_ / "rapport.exr").string();
-        tests::write_bytes(
-            folder_ / "scene.pbrt",
-            fmt::format(
-                "Scale -1 1 1\nLookAt 0.8 -2.6 3  0 0 0  0 0 1\n"
-                "Camera \"perspective\" \"float fov\" 30\n"
-                "Film \"rgb\" \"integer xresolution\" {0} \"integer yresolution\" {0}\n"
-                "Sampler \"independent\" \"integer pixelsamples\" {1}\n"
-                "Integrator \"path\" \"integer maxdepth\" {3}\nWorldBegin\n"
-                "LightSource \"infinite\" \"rgb L\" [0.3 0.3 0.3]\n"
-                "LightSource \"distant\" \"rgb L\" [0.6 0.6 0.6] \"point3 from\" [-1.5 1.5 2.5] "
-                "\"point3 to\" [0 0 0]\n"
-                "Material {2}\nShape \"plymesh\" \"string filename\" \"hills.ply\"\n",
-                kSize, samples(), material, bounces));
+        const auto list = [](const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
+        std::string scene = fmt::format(
+            "Scale -1 1 1\nLookAt {0}  {1}  0 0 1\nCamera \"perspective\" \"float fov\" {2}\n"
+            "Film \"rgb\" \"integer xresolution\" {3} \"integer yresolution\" {3}\n"
+            "Sampler \"independent\" \"integer pixelsamples\" {4}\n"
+            "Integrator \"path\" \"integer maxdepth\" {5}\nWorldBegin\n"
+            "LightSource \"infinite\" \"rgb L\" [{6} {6} {6}]\n",
+            list(world.eye), list(world.centre), world.fov, kSize, samples(), bounces, world.sky);
+        if (world.sun > 0)
+            scene += fmt::format("LightSource \"distant\" \"rgb L\" [{0} {0} {0}] "
+                                 "\"point3 from\" [{1}] \"point3 to\" [0 0 0]\n",
+                                 world.sun, list(kTowardsSun));
+        scene += fmt::format("Material {}\nShape \"plymesh\" \"string filename\" \"{}\"\n",
+                             material, world.mesh);
+        tests::write_bytes(folder_ / "scene.pbrt", scene);
         const tests::ProgramRun run = tests::run_program(
             {"render", "scene.pbrt", "-o", out, "--quiet", "--seed", std::to_string(seed)},
             folder_.path().string());
         EXPECT_EQ(run.status, 0) << run.err;
         return read_exr(out);
     }
+    Image by_us(const std::string& material, int seed) { return by_us(hills_, material, seed, 1); }
 
     static int samples() { return tests::long_run() ? 4096 : 1024; }
 
@@ -122,7 +161,52 @@ class Mitsuba : public testing::Test {
         return std::sqrt(std::max(squares, 0.0) * 3 * kSize * kSize) / mean;
     }
 
+    /// Pictures of the two must agree of the same material, and not of nearly the same.
+    void check(const World& world) {
+        constexpr int kBounces = 5;
+        using Json = nlohmann::json;
+        const auto rgb = [](const std::vector<double>& value) {
+            return Json{{"type", "rgb"}, {"value", value}};
+        };
+        const auto diffuse = [&](double red) {
+            return Json{{"type", "diffuse"}, {"reflectance", rgb({red, 0.5, 0.2})}};
+        };
+        const auto conductor = [&](double alpha) { // of copper
+            return Json{{"type", "roughconductor"},
+                        {"distribution", "ggx"},
+                        {"alpha", alpha},
+                        {"eta", rgb({0.2, 0.92, 1.1})},
+                        {"k", rgb({3.91, 2.45, 2.14})}};
+        };
+        struct Case {
+            std::string ours;
+            Json same, other;
+        };
+        for (const Case& material :
+             {Case{"\"diffuse\" \"rgb reflectance\" [0.7 0.5 0.2]", diffuse(0.7), diffuse(0.71)},
+              {"\"conductor\" \"rgb eta\" [0.2 0.92 1.1] \"rgb k\" [3.91 2.45 2.14] "
+               "\"float roughness\" 0.3 \"bool remaproughness\" false",
+               conductor(0.3), conductor(0.31)}}) {
+            const Image ours = by_us(world, material.ours, 5, kBounces);
+            const auto difference = [&](const Json& bsdf) {
+                return compare(
+                    ours, by_mitsuba(world, {{"type", "twosided"}, {"bsdf", bsdf}}, 6, kBounces));
+            };
+            const ImageDifference same = difference(material.same),
+                                  other = difference(material.other);
+            std::printf(
+                "%s: p %.2g, offset of the mean %.2f standard errors; nearly the same: p %.2g\n",
+                material.ours.c_str(), same.p_value, same.mean_z, other.p_value);
+            EXPECT_TRUE(same.tested);
+            EXPECT_TRUE(same.agree) << material.ours;
+            EXPECT_FALSE(other.agree) << material.ours;
+        }
+    }
+
+    static inline const glm::vec3 kTowardsSun{-1.5f, 1.5f, 2.5f};
     tests::TemporaryFolder folder_;
+    const World hills_{
+        (folder_ / "hills.ply").string(), {0.8f, -2.6f, 3}, {0, 0, 0}, 30, 0.3f, 0.6f};
 };
 
 TEST_F(Mitsuba, RendersTheExportAsWeRenderTheCloth) {
@@ -153,43 +237,13 @@ TEST_F(Mitsuba, RendersTheExportAsWeRenderTheCloth) {
     EXPECT_LT(same_file, 0.005);
 }
 
-TEST_F(Mitsuba, RendersDiffuseAndConductorAsWeDo) {
-    constexpr int kBounces = 5;
-    using Json = nlohmann::json;
-    const auto rgb = [](const std::vector<double>& value) {
-        return Json{{"type", "rgb"}, {"value", value}};
-    };
-    const auto diffuse = [&](double red) {
-        return Json{{"type", "diffuse"}, {"reflectance", rgb({red, 0.5, 0.2})}};
-    };
-    const auto conductor = [&](double alpha) { // of copper
-        return Json{{"type", "roughconductor"},
-                    {"distribution", "ggx"},
-                    {"alpha", alpha},
-                    {"eta", rgb({0.2, 0.92, 1.1})},
-                    {"k", rgb({3.91, 2.45, 2.14})}};
-    };
-    struct Case {
-        std::string ours;
-        Json same, other;
-    };
-    for (const Case& material :
-         {Case{"\"diffuse\" \"rgb reflectance\" [0.7 0.5 0.2]", diffuse(0.7), diffuse(0.71)},
-          {"\"conductor\" \"rgb eta\" [0.2 0.92 1.1] \"rgb k\" [3.91 2.45 2.14] "
-           "\"float roughness\" 0.3 \"bool remaproughness\" false",
-           conductor(0.3), conductor(0.31)}}) {
-        const Image ours = by_us(material.ours, 5, kBounces);
-        const auto difference = [&](const Json& bsdf) {
-            return compare(ours, by_mitsuba({{"type", "twosided"}, {"bsdf", bsdf}}, 6, kBounces));
-        };
-        const ImageDifference same = difference(material.same), other = difference(material.other);
-        std::printf(
-            "%s: p %.2g, offset of the mean %.2f standard errors; nearly the same: p %.2g\n",
-            material.ours.c_str(), same.p_value, same.mean_z, other.p_value);
-        EXPECT_TRUE(same.tested);
-        EXPECT_TRUE(same.agree) << material.ours;
-        EXPECT_FALSE(other.agree) << material.ours;
-    }
+TEST_F(Mitsuba, RendersDiffuseAndConductorAsWeDo) { check(hills_); }
+
+TEST_F(Mitsuba, RendersTheSheetAsWeDo) {
+    RAPPORT_SHARED_DATA_OR_SKIP(data);
+    const std::filesystem::path sheet = folder_ / "sheet.ply";
+    tests::write_bytes(sheet, flat_sheet(data.parent_path() / "bench" / "cloth200k.ply"));
+    check({sheet.string(), {1.6f, -2.4f, 1.9f}, {0, 0, 0.15f}, 40, 1, 0});
 }
 
 } // namespace
