@@ -12,7 +12,7 @@
 
 // Time of one look-up by each way to table exits that charts/parameterisation.py compares, which
 // draws it:
-//     parameterisation_bench --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true
+//     parameterisation_bench --benchmark_repetitions=31 --benchmark_enable_random_interleaving=true
 //         --benchmark_format=json > lookup.json
 // All are written alike, plainly and with the C library's functions, around the same search of the
 // grid of incidence and the same blend of four nodes' planes, 8 bytes each, over directions from

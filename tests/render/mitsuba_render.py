@@ -1,7 +1,8 @@
 """Renders a mesh with Mitsuba 3 under a sky and a sun, in several pictures whose mean and its variance it writes.
 
-python3 mitsuba_render.py MESH.ply BSDF OUT.exr SIZE SAMPLES SEED BOUNCES
-where BSDF is one of Mitsuba's as JSON. Needs numpy.
+python3 mitsuba_render.py VARIANT MESH.ply BSDF OUT.exr SIZE SAMPLES SEED BOUNCES
+where BSDF is one of Mitsuba's as JSON. Spectral variants have equal-energy light, and write X, Y and Z, which such
+light makes equal on white. Needs numpy.
 """
 import json
 import sys
@@ -11,19 +12,21 @@ import numpy
 
 PICTURES = 32
 
-mesh, bsdf, out, size, samples, seed, bounces = sys.argv[1:]
-mi.set_variant("scalar_rgb")
+variant, mesh, bsdf, out, size, samples, seed, bounces = sys.argv[1:]
+mi.set_variant(variant)
+spectral = variant.endswith("spectral")
+white = "uniform" if spectral else "rgb"
 scene = mi.load_dict({
     "type": "scene",
     "integrator": {"type": "path", "max_depth": int(bounces) + 1},
-    "sky": {"type": "constant", "radiance": {"type": "rgb", "value": 0.3}},
+    "sky": {"type": "constant", "radiance": {"type": white, "value": 0.3}},
     "sun": {"type": "directional", "direction": [1.5, -1.5, -2.5],
-            "irradiance": {"type": "rgb", "value": 0.6}},
+            "irradiance": {"type": white, "value": 0.6}},
     "mesh": {"type": "ply", "filename": mesh, "face_normals": True, "bsdf": json.loads(bsdf)},
     "camera": {"type": "perspective", "fov": 30,
                "to_world": mi.ScalarTransform4f().look_at([0.8, -2.6, 3], [0, 0, 0], [0, 0, 1]),
                "film": {"type": "hdrfilm", "width": int(size), "height": int(size),
-                        "rfilter": {"type": "box"}},
+                        "rfilter": {"type": "box"}, "pixel_format": "xyz" if spectral else "rgb"},
                "sampler": {"type": "independent", "sample_count": max(int(samples) // PICTURES, 1)}},
 })
 pictures = numpy.array([numpy.array(mi.render(scene, seed=int(seed) * PICTURES + i)) for i in range(PICTURES)],
