@@ -6,7 +6,9 @@
 #include <vector>
 
 // Time of one look-up in a table of the full grid, over directions that change from call to call:
-// about one direction (the nodes stay in the cache), or over the whole sphere (they do not).
+// about one direction (the nodes stay in the cache), or over the whole sphere (they do not); and of
+// sampling meshes of more and more exits from few directions of incidence, which takes the
+// logarithm of their number and what the cache makes of their memory.
 
 namespace rapport {
 namespace {
@@ -64,6 +66,29 @@ void sample(benchmark::State& state) {
     });
 }
 BENCHMARK(sample)->Arg(0)->Arg(1);
+
+void sample_of_mesh(benchmark::State& state) {
+    BsdfTable table = tests::small_synthetic_table(tests::satin_intensity);
+    table.exits = DirectionMesh(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+    table.intensity.resize(table.directions() * 2 * table.exits.bins() * table.bands.count());
+    CounterRng rng(2, Purpose::test, 0, 0);
+    for (float& intensity : table.intensity)
+        intensity = rng.uniform_float() / static_cast<float>(4 * kPi);
+    const TableBsdf bsdf(std::move(table), "");
+    const std::vector<Query> all = queries(false);
+    size_t i = 0;
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(bsdf.sample(all[i].eye, all[i].choice, all[i].u));
+        i = (i + 1) % all.size();
+    }
+}
+BENCHMARK(sample_of_mesh)
+    ->ArgNames({"columns", "rows"})
+    ->Args({24, 16})
+    ->Args({48, 32})
+    ->Args({96, 64})
+    ->Args({192, 128})
+    ->Args({384, 256});
 
 } // namespace
 } // namespace rapport
