@@ -55,7 +55,7 @@ RisingMeasurement::set_up(bool hasty, const GoniophotometerSettings& settings) c
     auto swatch =
         std::make_shared<const FibreSwatch>(tracer, optics.fibres, cloth_->bands, glm::dvec2(side));
     return std::unique_ptr<const Bench>(
-        new Bench{hasty, tracer, std::move(optics), std::move(swatch)});
+        new Bench{hasty, tracer, facing_yarns(*tracer), std::move(optics), std::move(swatch)});
 }
 
 void RisingMeasurement::advance(const StopSignal& stopped, const MeasuringWatch& watch) {
@@ -69,7 +69,7 @@ void RisingMeasurement::advance(const StopSignal& stopped, const MeasuringWatch&
         bench_ = set_up(hasty, settings);
     settings.seed = static_cast<uint64_t>(rounds_);
     BsdfTable table = make_full_table(cloth_->bands, true, true);
-    table.exit_axis = facing_yarns(*bench_->tracer);
+    table.exit_axis = bench_->facing_yarns;
     measure(*bench_->tracer, bench_->optics.fibres, settings, table, watch, {},
             bench_->optics.colourways);
     if (rounds_ <= 1)

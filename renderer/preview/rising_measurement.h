@@ -34,6 +34,7 @@ class RisingMeasurement {
     struct Bench {
         bool hasty;
         std::shared_ptr<const kernel::FibreTracer> tracer;
+        std::array<ConeAxis, 2> facing_yarns;
         ClothOptics optics;
         std::shared_ptr<const FibreSwatch> swatch;
     };
