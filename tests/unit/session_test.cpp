@@ -238,6 +238,49 @@ TEST(Session, KeepsTheOldSceneUntilABrokenOneIsMended) {
     EXPECT_GT(difference(next_picture(session, 4)->image, before), 0.05);
 }
 
+TEST(Session, ThePersonsOwnViewStaysUntilTheFileHasAnotherCamera) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    session.resize({80, 60});
+    const auto reload = [&](Session& session, const std::filesystem::path& file,
+                            const std::string& bytes) {
+        const size_t told = session.notes().size();
+        tests::write_bytes(file, bytes);
+        tick_until(session, [&] { return session.notes().size() > told; });
+        EXPECT_EQ(session.error(), "");
+    };
+    std::string text = tests::read_bytes(files.scene());
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        text.replace(text.find(from), from.size(), to);
+    };
+    session.orbit({12, 5});
+    const Camera own = session.camera();
+    replace("[0.5 0.5 0.6]", "[0.1 0.1 0.1]");
+    replace("\"integer xresolution\" 64", "\"integer xresolution\" 100");
+    reload(session, files.scene(), text);
+    EXPECT_EQ(session.camera(), own);
+
+    replace("0.5 0.5 3 ", "0.5 0.5 4 ");
+    reload(session, files.scene(), text);
+    EXPECT_EQ(session.camera().to_world, load_scene({files.scene()}).scene->camera.to_world);
+    EXPECT_EQ(session.camera().resolution, glm::ivec2(80, 60));
+
+    session.orbit({3, 0}); // and once it has been taken it is an old one, too
+    const Camera turned = session.camera();
+    reload(session, files.scene(), text + "# the same camera\n");
+    EXPECT_EQ(session.camera(), turned);
+
+    // A bare model has no camera: that it is framed otherwise is none of its own.
+    Session bare({files / "square.glb"});
+    bare.orbit({12, 5});
+    const Camera of_model = bare.camera(), framed = bare.scene().camera;
+    tests::GltfWriter moved = tests::quad();
+    moved.json["nodes"][0]["scale"] = {3, 3, 3};
+    reload(bare, files / "square.glb", moved.glb());
+    EXPECT_EQ(bare.camera(), of_model);
+    EXPECT_NE(bare.scene().camera, framed);
+}
+
 TEST(Session, WhatASceneOrAClothIncludesIsReadAgainWhenItChanges) {
     const SquareScene files(SquareScene::Worn::stored);
     const std::string text = tests::read_bytes(files.scene());
