@@ -39,8 +39,9 @@ std::string path_told(const Scene& scene, const kernel::Ray& ray, Sampler sample
     return text;
 }
 
+/// Counts what it traces among `traced`.
 FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, int x, int y,
-                       int number) {
+                       int number, uint64_t& traced) {
     const RenderSettings& settings = scene.settings;
     const uint64_t pixel = static_cast<uint64_t>(y) * width + x;
     const auto new_sampler = [&] {
@@ -51,6 +52,7 @@ FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, in
     const glm::vec2 offset = (2.0f * sampler.next_2d() - 1.0f) * settings.filter_radius;
     const kernel::Ray ray = rays(glm::vec2(x, y) + 0.5f + offset);
     const PathResult path = trace_path(scene, ray, sampler);
+    traced += path.rays;
     if (!finite(path.radiance))
         throw std::runtime_error(
             fmt::format("pixel ({}, {}), sample {}: radiance {} is not finite; its path: {}", x, y,
@@ -161,13 +163,16 @@ class Rendering {
 
 } // namespace
 
-void sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::Tile& tile,
-                 int until) {
+uint64_t sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::Tile& tile,
+                     int until) {
+    uint64_t traced = 0;
     for (int y = tile.first.y; y < tile.end.y; ++y)
         for (int x = tile.first.x; x < tile.end.x; ++x)
             for (int sample = tile.samples; sample < until; ++sample)
-                film.add(x, y, sample, take_sample(scene, rays, film.resolution().x, x, y, sample));
+                film.add(x, y, sample,
+                         take_sample(scene, rays, film.resolution().x, x, y, sample, traced));
     tile.samples = until;
+    return traced;
 }
 
 Film render(const Scene& scene, const RenderWatcher& watcher, const RenderCheckpoint& checkpoint) {

@@ -130,7 +130,7 @@ void draw_progress(const Session& session) {
                          picture->samples, picture->samples == 1 ? "" : "s"));
         if (picture->samples > 1)
             text(fmt::format("noise {:.3f}", picture->noise));
-        text(fmt::format("{:.2f} M paths/s", picture->paths_per_second * 1e-6));
+        text(fmt::format("{:.2f} Mrays/s", picture->rays_per_second * 1e-6));
     }
     if (const std::filesystem::path file = session.worker().working_on(); !file.empty())
         text("measuring " + file.filename().string());

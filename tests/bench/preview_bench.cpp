@@ -105,8 +105,8 @@ void run(const std::filesystem::path& cloth) {
         return session.picture()->view == session.tracer().latest() &&
                session.picture()->scale == 1;
     });
-    std::printf("full resolution after %.1f s, %.2f M paths/s\n", full,
-                1e-6 * session.picture()->paths_per_second);
+    std::printf("full resolution after %.1f s, %.2f Mrays/s\n", full,
+                1e-6 * session.picture()->rays_per_second);
     stop_tracing(session);
     edit(session, file);
 }
