@@ -150,14 +150,18 @@ class View {
 
 } // namespace
 
-void view(Session& session, const glm::ivec2& size, const ViewRun& run) {
+std::vector<std::string> view(Session& session, const glm::ivec2& size, const ViewRun& run) {
     constexpr int kMostLosses = 3; // more are a driver that will not work
     glm::ivec2 opened = size;
     int frame = 0;
     for (int losses = 0;; ++losses) {
         View view(session, opened);
-        if (!view.run(run, frame))
-            return;
+        if (!view.run(run, frame)) {
+            const auto shown = static_cast<std::ptrdiff_t>(session.notes().size());
+            if (session.edited())
+                session.rescue("closed with edits that had not been saved");
+            return {session.notes().begin() + shown, session.notes().end()};
+        }
         session.rescue("the graphics driver was reset: the window is a new one");
         if (losses == kMostLosses)
             throw FileError("window", "", "a graphics driver that keeps its pictures",

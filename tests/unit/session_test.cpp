@@ -387,35 +387,40 @@ TEST(FibreView, ShowsTheClothThatIsWornFromWhereItIsTurnedTo) {
         return last->image;
     };
     const glm::vec3 light = glm::normalize(glm::vec3(0.5f, 0, 1));
-    view.show(document().table->swatch, light, {48, 24});
+    view.show(document().table->swatches.at(""), light, {48, 24});
     const Image first = next();
     EXPECT_GT(mean(first, "R"), 0.01);
-    view.show(document().table->swatch, light, {48, 24}); // the same again
+    view.show(document().table->swatches.at(""), light, {48, 24}); // the same again
     EXPECT_EQ(view.picture()->view, last->view);
     view.orbit({10, 0});
     const Image turned = next();
     EXPECT_FALSE(compare(first, turned).agree);
     view.zoom(2);
     EXPECT_FALSE(compare(turned, next()).agree);
-    view.show(document().table->swatch, glm::vec3(0, 0, -1), {48, 24}); // from behind
+    view.show(document().table->swatches.at(""), glm::vec3(0, 0, -1), {48, 24}); // from behind
     EXPECT_FALSE(compare(turned, next()).agree);
 
     Cloth red = *document().cloth;
     red.warp.fibre.color = {0.75, 0.1, 0.1};
     red.weft.fibre.color = {0.75, 0.1, 0.1};
+    for (const char* yarn : {"warp", "weft"})
+        red.colourways["green"][yarn].color = {0.1, 0.75, 0.1};
     session.edit_cloth(files.cloth(), red);
     tick_until(session, [&] { return !document().waiting; });
     EXPECT_EQ(document().error, "");
-    view.show(document().table->swatch, light, {48, 24});
+    view.show(document().table->swatches.at(""), light, {48, 24});
     const Image dyed = next();
     EXPECT_GT(mean(dyed, "albedo.R"), 2 * mean(dyed, "albedo.G"));
+    view.show(document().table->swatches.at("green"), light, {48, 24});
+    const Image green = next();
+    EXPECT_GT(mean(green, "albedo.G"), 2 * mean(green, "albedo.R"));
 }
 
 TEST(FibreView, AStoredTableHasNoFibres) {
     const SquareScene files(SquareScene::Worn::stored);
     Session session({files.scene()});
     for (const auto& [file, document] : session.documents())
-        EXPECT_EQ(document.table->swatch, nullptr);
+        EXPECT_TRUE(document.table->swatches.empty());
 }
 
 TEST(Session, RefusesASceneThatIsNone) {
