@@ -149,6 +149,14 @@ TEST_F(ViewWindow, OutlivesAStormOfSizesAndBeingHidden) {
     EXPECT_EQ(picture->image.height, 480);
 }
 
+TEST_F(ViewWindow, ThePictureIsTracedWhileItOpens) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    std::vector<uint64_t> views;
+    view(session, {900, 600}, {3, {}, [&](int) { views.push_back(session.tracer().latest()); }});
+    EXPECT_EQ(views, std::vector<uint64_t>(3, 1)); // begun before, and never begun again
+}
+
 TEST_F(ViewWindow, TheMouseTurnsAndTheWheelBringsNearer) {
     const SquareScene files(SquareScene::Worn::measured);
     Session session({files.scene()});
