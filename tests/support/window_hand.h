@@ -82,7 +82,8 @@ class WindowHand {
     /// Opens a window of that size on the session and does all of it. Returns what `view` does.
     std::vector<std::string> use(Session& session, const glm::ivec2& size = {1200, 900}) {
         using Clock = std::chrono::steady_clock;
-        const Clock::time_point latest = Clock::now() + std::chrono::minutes(1);
+        const Clock::time_point latest =
+            Clock::now() + std::chrono::minutes(5); // as tick_until does
         size_t next = 0;
         const auto before_frame = [&](int frame) {
             if (frame == 0)
