@@ -36,7 +36,7 @@ void pick_side(const char* label, Side& side) {
 
 } // namespace
 
-/// Another that is worn, or another file, takes the place of what was looked at.
+/// Another that is worn takes the place of what was looked at.
 void ClothPanel::follow_worn_colourway(const Session& session) {
     std::string worn;
     for (const auto& [name, choice] : session.choices())
@@ -141,6 +141,7 @@ void ClothPanel::draw(Session& session, std::filesystem::path& file, float pixel
     const ClothDocument& document = found->second;
     if (file_ != file) {
         file_ = file;
+        colourway_ = worn_colourway_ = "";
         const std::string name = file.stem().string() + "-edited.toml";
         std::strncpy(target_, name.c_str(), sizeof target_ - 1);
     }
