@@ -9,7 +9,7 @@
 namespace rapport {
 namespace {
 
-constexpr size_t kBatchPaths = 256;         ///< few, for each asks whether to stop
+constexpr size_t kBatchPaths = 256;
 constexpr double kGreatestAbsorption = 1e4; ///< [1/µm]: ten thousand times what hides a fibre
 
 /// Cosine-weighted, from the face side.
@@ -21,7 +21,8 @@ IncidentDirection diffuse_direction(CounterRng& rng) {
 } // namespace
 
 ColourSolver::ColourSolver(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
-                           const GoniophotometerSettings& settings) {
+                           const GoniophotometerSettings& settings)
+    : stopped_(settings.stopped) {
     std::vector<FibreOptics> undyed(optics.begin(), optics.end());
     for (FibreOptics& kind : undyed)
         kind.absorption_per_um.clear();
@@ -30,10 +31,10 @@ ColourSolver::ColourSolver(const kernel::FibreTracer& tracer, std::span<const Fi
     const size_t paths = settings.colour_paths;
     std::vector<std::vector<WhitePath>> batches((paths + kBatchPaths - 1) / kBatchPaths);
     parallel_for(batches.size(), [&](size_t batch) {
-        throw_if(settings.stopped);
         IncidentPath path;
         const size_t end = std::min(paths, (batch + 1) * kBatchPaths);
         for (size_t k = batch * kBatchPaths; k < end; ++k) {
+            throw_if(stopped_);
             CounterRng rng(settings.seed, Purpose::colour_solve, 0, k);
             const IncidentDirection incident = diffuse_direction(rng);
             tracing.trace(incident, rng, path);
@@ -65,6 +66,7 @@ std::optional<double> ColourSolver::absorption_for(double wanted) const {
     // The albedo falls steadily; bisection in the logarithm after a bracket is found.
     double low = 1e-9, high = kGreatestAbsorption;
     for (int step = 0; step < 60; ++step) {
+        throw_if(stopped_);
         const double middle = std::sqrt(low * high);
         (albedo(middle) > wanted ? low : high) = middle;
     }

@@ -17,7 +17,8 @@ namespace rapport {
 class ColourSolver {
   public:
     /// `optics` gives refractive indices and surface absorption; its volume absorption is ignored.
-    /// Of the settings, `colour_paths`, `max_events`, `seed` and `stopped` count here.
+    /// Of the settings, `colour_paths`, `max_events`, `seed` and `stopped` count here;
+    /// the last is asked before each path and while a dye is solved for, which throws Stopped.
     ColourSolver(const kernel::FibreTracer& tracer, std::span<const FibreOptics> optics,
                  const GoniophotometerSettings& settings);
 
@@ -34,6 +35,7 @@ class ColourSolver {
         double length; ///< inside fibres [µm]
         double weight; ///< left by surface absorption
     };
+    StopSignal stopped_;
     std::vector<WhitePath> paths_;
 };
 

@@ -53,9 +53,11 @@ class Run {
     /// One for each direction and set of dyes in turn.
     std::vector<PathTally> empty_tallies() const {
         std::vector<PathTally> tallies;
-        for (size_t d = 0; d < table_.directions(); ++d)
+        for (size_t d = 0; d < table_.directions(); ++d) {
+            throw_if(settings_.stopped);
             tallies.insert(tallies.end(), dyes_,
                            PathTally(table_, d, tracers_.realisations, tracers_.groups));
+        }
         return tallies;
     }
     /// Those of one direction, in all dyes.
@@ -169,6 +171,7 @@ Run::plan(const std::function<void(const GoniophotometerProgress&)>& progress) c
 
 void Run::extend(std::vector<uint64_t>& planned, const std::vector<PathTally>& tallies) const {
     for (size_t d = 0; d < planned.size(); ++d) {
+        throw_if(settings_.stopped);
         if (paths(tallies, d) < planned[d])
             continue;
         for (const PathTally& tally : of_direction(tallies, d)) {
@@ -185,15 +188,16 @@ void Run::trace(std::span<const Task> tasks, std::vector<PathTally>& tallies) co
         const std::span<const Task> chunk = tasks.first(std::min(tasks.size(), waiting_batches_));
         std::vector<PathBatch> found(chunk.size());
         parallel_for(chunk.size(), [&](size_t i) {
-            throw_if(settings_.stopped);
-            found[i] = trace_batch(tracers_, table_, chunk[i].direction, chunk[i].group,
-                                   settings_.seed, chunk[i].first, chunk[i].count);
+            found[i] =
+                trace_batch(tracers_, table_, chunk[i].direction, chunk[i].group, settings_.seed,
+                            chunk[i].first, chunk[i].count, settings_.stopped);
         });
         std::vector<size_t> first_of_direction;
         for (size_t i = 0; i < chunk.size(); ++i)
             if (i == 0 || chunk[i].direction != chunk[i - 1].direction)
                 first_of_direction.push_back(i);
         parallel_for(first_of_direction.size() * dyes_, [&](size_t task) {
+            throw_if(settings_.stopped);
             const size_t first = first_of_direction[task / dyes_], dyes = task % dyes_;
             const size_t direction = chunk[first].direction;
             for (size_t i = first; i < chunk.size() && chunk[i].direction == direction; ++i)
@@ -311,11 +315,13 @@ GoniophotometerCounts Run::write(const std::vector<PathTally>& tallies) const {
     table_.realisation_error.assign(tracers_.realisations > 1 ? table_.directions() : 0, 0);
     std::vector<Scattering*> scattering{&table_};
     for (auto& [name, of_dyes] : table_.colourways) {
+        throw_if(settings_.stopped);
         of_dyes = table_; // for its size
         scattering.push_back(&of_dyes);
     }
     GoniophotometerCounts counts;
     for (size_t d = 0; d < table_.directions(); ++d) {
+        throw_if(settings_.stopped);
         for (size_t dyes = 0; dyes < dyes_; ++dyes)
             tallies[d * dyes_ + dyes].write(*scattering[dyes], d);
         table_.paths[d] = paths(tallies, d);

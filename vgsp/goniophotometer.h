@@ -20,7 +20,7 @@ struct GoniophotometerSettings {
     /// By which wanted colours are solved for: the standard error of an albedo is 0.5/√this at
     /// most.
     uint64_t colour_paths = 1 << 16;
-    StopSignal stopped = nullptr; ///< asked before each batch of paths
+    StopSignal stopped = nullptr; ///< asked before each path
 };
 
 /// Told after each increment of the run, and of the pilot that plans it.

@@ -130,6 +130,13 @@ std::array<ConeAxis, 2> facing_yarns(const kernel::FibreTracer& tracer) {
     return facing;
 }
 
+std::vector<FibreOptics> ClothOptics::dyed(const Colourways::mapped_type& dyes) const {
+    std::vector<FibreOptics> made = fibres;
+    for (size_t kind = 0; kind < made.size(); ++kind)
+        made[kind].absorption_per_um = dyes[kind];
+    return made;
+}
+
 ClothOptics cloth_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
                          const GoniophotometerSettings& settings) {
     const std::vector<YarnKind> kinds = yarn_kinds(cloth);

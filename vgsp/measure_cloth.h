@@ -45,6 +45,9 @@ struct ClothMeasurement {
 struct ClothOptics {
     std::vector<FibreOptics> fibres;
     Colourways colourways;
+
+    /// The fibres in other dyes, as one of the colourways has them.
+    std::vector<FibreOptics> dyed(const Colourways::mapped_type& dyes) const;
 };
 
 /// Of each side the yarns whose highlight it shows, about which its exits are charted: those of

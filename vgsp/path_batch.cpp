@@ -3,7 +3,8 @@
 namespace rapport {
 
 PathBatch trace_batch(const PathTracers& tracers, const BsdfTable& table, size_t direction,
-                      size_t group, uint64_t seed, uint64_t first, uint64_t count) {
+                      size_t group, uint64_t seed, uint64_t first, uint64_t count,
+                      const StopSignal& stopped) {
     const size_t channels = tracers.at(group, 0).channels;
     PathBatch batch;
     batch.group = group;
@@ -45,6 +46,7 @@ PathBatch trace_batch(const PathTracers& tracers, const BsdfTable& table, size_t
         batch.paths.push_back(until - traced);
         const size_t deposits = batch.quarters.size();
         for (; traced < until; ++traced) {
+            throw_if(stopped);
             CounterRng rng(seed, Purpose::incident_path, direction * tracers.groups + group,
                            first + traced);
             paths.trace(incident, rng, path);

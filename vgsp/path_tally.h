@@ -30,8 +30,10 @@ struct PathBatch {
 
 /// Traces paths [first, first + count) of direction number `direction` of the table in one group of
 /// bands. The realisations share the paths out equally, each taking those that follow one another.
+/// Throws Stopped.
 PathBatch trace_batch(const PathTracers& tracers, const BsdfTable& table, size_t direction,
-                      size_t group, uint64_t seed, uint64_t first, uint64_t count);
+                      size_t group, uint64_t seed, uint64_t first, uint64_t count,
+                      const StopSignal& stopped);
 
 /// Sums over the paths of one incident direction in one set of dyes, in double precision.
 class PathTally {

@@ -27,14 +27,11 @@ void run(const ViewOptions& options, const CommonOptions& common) {
             line.update(cloth, progress);
         });
     line.end();
-    view(session, size, {options.frames, options.screenshot});
-    if (!session.edited())
-        return;
-    const size_t told = session.notes().size();
-    session.rescue("closed with edits that had not been saved");
+    const std::vector<std::string> notes =
+        view(session, size, {options.frames, options.screenshot});
     if (!common.quiet)
-        for (size_t i = told; i < session.notes().size(); ++i)
-            fmt::print(stderr, "{}\n", session.notes()[i]);
+        for (const std::string& note : notes)
+            fmt::print(stderr, "{}\n", note);
 }
 
 } // namespace

@@ -97,8 +97,9 @@ float shadow_length(const glm::vec3& origin, const SurfacePoint& point, const Ca
 ///
 /// The candidates are one point of every stratum of the lights' shares and a shifted lattice (R2)
 /// in the space of directions; each is as likely as if it were alone, which is all that is needed.
+/// Counts the ray that it traces among `rays`.
 Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& frame,
-                 const FoldedBsdf& bsdf, float chance, Sampler& sampler) {
+                 const FoldedBsdf& bsdf, float chance, Sampler& sampler, uint32_t& rays) {
     const auto first = scene.choose_light(0);
     if (!first)
         return Rgb(0);
@@ -132,6 +133,7 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
     }
     if (total == 0)
         return Rgb(0);
+    ++rays;
     const glm::vec3 origin = offset_origin(point, picked.direction);
     const Rgb passed = scene.transmittance(origin, picked.direction,
                                            shadow_length(origin, point, picked), *picked.light);
@@ -172,6 +174,7 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, std::optional<Surface
     Scattering last{ray.org, kOnlyWay};
     int depth = 0;
     for (int layers = 0; layers <= Scene::kMaxLayers; point = scene.intersect(ray)) {
+        ++path.rays;
         if (!point) {
             path.radiance += throughput * escaped_radiance(scene, ray.dir, last);
             break;
@@ -219,7 +222,7 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, std::optional<Surface
         const FoldedBsdf bsdf(material, eye, frame.to_local(point->geometric_normal));
         if (scatters && pass < 1)
             path.radiance +=
-                throughput * direct_light(scene, *point, frame, bsdf, 1 - pass, sampler);
+                throughput * direct_light(scene, *point, frame, bsdf, 1 - pass, sampler, path.rays);
         if (pass > 0 && sampler.next_1d() < pass) {
             throughput *= unscattered / pass;
             ray = {offset_origin(*point, ray.dir), ray.dir};

@@ -15,6 +15,9 @@ struct PathResult {
     /// What the path would have scattered on where `max_depth` ended it: its weight times the
     /// albedo there, in the mean over the channels; of explicit fibres the weight alone.
     float cut = 0;
+    /// Rays through the scene: to each vertex, and to a light, through however many cloths it sees
+    /// that; not those among explicit fibres.
+    uint32_t rays = 0;
 };
 
 /// What a path met, and what its light counted on the way there.

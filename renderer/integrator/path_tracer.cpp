@@ -54,10 +54,11 @@ std::string path_told(const Scene& scene, CameraSample sample) {
     return text;
 }
 
-/// `met` is what the sample's ray meets.
+/// `met` is what the sample's ray meets. Counts what it traces among `traced`.
 FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, CameraSample& sample,
-                       const std::optional<SurfacePoint>& met) {
+                       const std::optional<SurfacePoint>& met, uint64_t& traced) {
     const PathResult path = trace_path(scene, sample.ray, met, sample.sampler);
+    traced += path.rays;
     if (!finite(path.radiance))
         throw std::runtime_error(
             fmt::format("pixel ({}, {}), sample {}: radiance {} is not finite; its path: {}",
@@ -170,8 +171,9 @@ class Rendering {
 
 } // namespace
 
-void sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::Tile& tile,
-                 int until) {
+uint64_t sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::Tile& tile,
+                     int until) {
+    uint64_t traced = 0;
     const int width = film.resolution().x;
     const int samples = until - tile.samples, row = samples * (tile.end.x - tile.first.x);
     kernel::Packet<kernel::Ray> camera_rays;
@@ -187,9 +189,10 @@ void sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::T
             const auto met = scene.intersect(std::span(camera_rays).first(packet.size()));
             for (size_t k = 0; k < packet.size(); ++k)
                 film.add(packet[k].x, y, packet[k].number,
-                         take_sample(scene, rays, width, packet[k], met[k]));
+                         take_sample(scene, rays, width, packet[k], met[k], traced));
         }
     tile.samples = until;
+    return traced;
 }
 
 Film render(const Scene& scene, const RenderWatcher& watcher, const RenderCheckpoint& checkpoint) {

@@ -38,8 +38,9 @@ Film render(const Scene& scene, const RenderWatcher& watcher = {},
 
 /// Takes the samples [tile.samples, until) of every pixel of one of the film's tiles, through a
 /// camera of the film's resolution, which need not be the scene's: those that `render` takes there.
-/// Different tiles may be sampled at the same time. Throws as `render` does.
-void sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::Tile& tile,
-                 int until);
+/// Different tiles may be sampled at the same time. Returns how many rays that took. Throws as
+/// `render` does.
+uint64_t sample_tile(const Scene& scene, const CameraRays& rays, Film& film, Film::Tile& tile,
+                     int until);
 
 } // namespace rapport

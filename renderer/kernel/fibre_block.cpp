@@ -39,6 +39,13 @@ std::pair<double, double> shifts_into(double from, double to, double low, double
 
 constexpr uint32_t kNoCopy = ~0u;
 
+/// At every so many segments, whether to stop.
+void ask_at(size_t segment, const StopSignal& stopped) {
+    constexpr size_t kAskEvery = 4096;
+    if (segment % kAskEvery == 0)
+        throw_if(stopped);
+}
+
 /// Half the thickness, the fastest in measurements on cells narrower and wider than the cloth is
 /// thick: a wider block makes rays wrap less, and the hierarchy larger. Less than that where the
 /// block would repeat a thick and narrow cell too often.
@@ -71,6 +78,14 @@ struct FibreBlock::Embree {
 };
 
 struct Callbacks {
+    /// What Embree's building asks after.
+    struct Building {
+        const FibreBlock* block;
+        const StopSignal* stopped;
+
+        bool given_up() const { return *stopped && (*stopped)(); }
+    };
+
     /// One ray's question and, copy by copy, its answer.
     struct Query : embree::Context {
         const FibreBlock* block;
@@ -80,22 +95,27 @@ struct Callbacks {
     };
 
     static void bounds(const RTCBoundsFunctionArguments* arguments) {
-        const auto& block = *static_cast<const FibreBlock*>(arguments->geometryUserPtr);
-        take_over(&block);
+        const auto& building = *static_cast<const Building*>(arguments->geometryUserPtr);
+        take_over(&building);
+        const FibreBlock& block = *building.block;
+        if (building.given_up()) { // Embree does not ask until it has them all
+            *arguments->bounds_o = {};
+            hand_over(&building);
+            return;
+        }
         const FibreBlock::Copy& copy = block.copies_[arguments->primID];
         const auto [low, high] = kernel::bounds(block.segments_[copy.segment]);
         const glm::dvec3 offset = block.offset(copy.shift), pad(4 * block.tolerance_);
         const glm::vec3 from(low + offset - pad), to(high + offset + pad);
         *arguments->bounds_o = {from.x, from.y, from.z, 0, to.x, to.y, to.z, 0};
-        hand_over(&block);
+        hand_over(&building);
     }
 
     /// Embree asks whether it is to go on with the hierarchy.
-    static bool goes_on(void* stop_signal, double) {
-        take_over(stop_signal);
-        const auto& stopped = *static_cast<const StopSignal*>(stop_signal);
-        const bool goes_on = !(stopped && stopped());
-        hand_over(stop_signal);
+    static bool goes_on(void* building, double) {
+        take_over(building);
+        const bool goes_on = !static_cast<const Building*>(building)->given_up();
+        hand_over(building);
         return goes_on;
     }
 
@@ -180,34 +200,33 @@ FibreBlock::FibreBlock(const FibreAssembly& assembly, const StopSignal& stopped)
         chain_period_.push_back(
             to_shift(std::round(chain.period.x / cell_.x), std::round(chain.period.y / cell_.y)));
     }
-    measure_extent();
+    measure_extent(stopped);
     fill(stopped);
+    Callbacks::Building building{this, &stopped};
     const RTCDevice device = embree_->device.get();
     const embree::Geometry geometry = embree::make_geometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(copies_.size()));
-    rtcSetGeometryUserData(geometry.get(), this);
+    rtcSetGeometryUserData(geometry.get(), &building);
     rtcSetGeometryBoundsFunction(geometry.get(), Callbacks::bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry.get(), Callbacks::intersect);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometry(embree_->scene.get(), geometry.get());
     rtcSetSceneBuildQuality(embree_->scene.get(), RTC_BUILD_QUALITY_HIGH);
-    rtcSetSceneProgressMonitorFunction(embree_->scene.get(), Callbacks::goes_on,
-                                       const_cast<StopSignal*>(&stopped));
-    hand_over(this);
-    hand_over(&stopped);
+    rtcSetSceneProgressMonitorFunction(embree_->scene.get(), Callbacks::goes_on, &building);
+    hand_over(&building);
     rtcCommitScene(embree_->scene.get());
-    take_over(this);
-    take_over(&stopped);
+    take_over(&building);
     throw_if(stopped); // before Embree's complaint that it was
     embree::check(device);
 }
 FibreBlock::~FibreBlock() = default;
 
-void FibreBlock::measure_extent() {
+void FibreBlock::measure_extent(const StopSignal& stopped) {
     z_min_ = std::numeric_limits<double>::infinity();
     z_max_ = -z_min_;
-    for (const FibreSegment& segment : segments_) {
-        const auto [low, high] = bounds(segment);
+    for (size_t s = 0; s < segments_.size(); ++s) {
+        ask_at(s, stopped);
+        const auto [low, high] = bounds(segments_[s]);
         z_min_ = std::min(z_min_, low.z);
         z_max_ = std::max(z_max_, high.z);
     }
@@ -216,9 +235,10 @@ void FibreBlock::measure_extent() {
                                   std::abs(z_max_)});
 }
 
-template <class Visit> void FibreBlock::each_copy(Visit visit) const {
+template <class Visit> void FibreBlock::each_copy(const StopSignal& stopped, Visit visit) const {
     const glm::dvec2 from(-margin_), to = cell() + margin_;
     for (uint32_t s = 0; s < segments_.size(); ++s) {
+        ask_at(s, stopped);
         const auto [low, high] = bounds(segments_[s]);
         const auto [x_from, x_to] = shifts_into(from.x, to.x, low.x, high.x, cell().x);
         const auto [y_from, y_to] = shifts_into(from.y, to.y, low.y, high.y, cell().y);
@@ -231,13 +251,10 @@ template <class Visit> void FibreBlock::each_copy(Visit visit) const {
 }
 
 void FibreBlock::fill(const StopSignal& stopped) {
-    constexpr size_t kAskEvery = 4096;
     size_t count = 0;
-    each_copy([&](uint32_t, Shift) { ++count; });
+    each_copy(stopped, [&](uint32_t, Shift) { ++count; });
     copies_.reserve(count); // exactly: they are most of the memory
-    each_copy([&](uint32_t s, Shift shift) {
-        if (copies_.size() % kAskEvery == 0)
-            throw_if(stopped);
+    each_copy(stopped, [&](uint32_t s, Shift shift) {
         const FibreSegment& segment = segments_[s];
         copies_.push_back({glm::vec3(segment.start + offset(shift)),
                            static_cast<float>(square(segment.radius)), glm::vec3(segment.direction),

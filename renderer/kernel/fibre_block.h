@@ -63,8 +63,8 @@ class FibreBlock {
     struct Embree;
     friend struct Callbacks;
 
-    void measure_extent();
-    template <class Visit> void each_copy(Visit visit) const;
+    void measure_extent(const StopSignal& stopped);
+    template <class Visit> void each_copy(const StopSignal& stopped, Visit visit) const;
     void fill(const StopSignal& stopped);
     bool same_fibre(uint32_t segment_a, Shift a, uint32_t segment_b, Shift b) const;
 

@@ -168,4 +168,19 @@ bool draw_cloth_controls(Cloth& cloth) {
     return changed;
 }
 
+bool pick_colourway(const ClothTable& table, std::string& colourway) {
+    if (table.dyed.size() < 2)
+        return false;
+    bool picked = false;
+    if (!ImGui::BeginCombo("colourway", colourway.empty() ? "its own" : colourway.c_str()))
+        return false;
+    for (const auto& [name, bsdf] : table.dyed)
+        if (ImGui::Selectable(name.empty() ? "its own" : name.c_str(), name == colourway)) {
+            picked = name != colourway;
+            colourway = name;
+        }
+    ImGui::EndCombo();
+    return picked;
+}
+
 } // namespace rapport

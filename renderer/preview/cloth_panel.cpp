@@ -22,11 +22,35 @@ void draw_curve(const char* label, const std::vector<float>& curve) {
     ImGui::PopID();
 }
 
+void pick_side(const char* label, Side& side) {
+    ImGui::PushID(label);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(label);
+    for (const Side other : {Side::front, Side::back}) {
+        ImGui::SameLine((other == Side::front ? 4.0f : 8.0f) * ImGui::GetFontSize());
+        if (ImGui::RadioButton(other == Side::front ? "face" : "back", side == other))
+            side = other;
+    }
+    ImGui::PopID();
+}
+
 } // namespace
+
+/// Another that is worn takes the place of what was looked at.
+void ClothPanel::follow_worn_colourway(const Session& session) {
+    std::string worn;
+    for (const auto& [name, choice] : session.choices())
+        if (choice.file == file_) {
+            worn = choice.colourway;
+            break;
+        }
+    if (worn != worn_colourway_)
+        colourway_ = worn_colourway_ = worn;
+}
 
 /// Under the light that draw_light() has dragged about.
 void ClothPanel::draw_fibres(const ClothTable& table, float pixel_ratio) {
-    if (!table.swatch) {
+    if (table.swatches.empty()) {
         ImGui::TextDisabled("a stored table has no fibres");
         return;
     }
@@ -36,7 +60,7 @@ void ClothPanel::draw_fibres(const ClothTable& table, float pixel_ratio) {
     ImGui::BeginChild("fibres", size, false,
                       ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::InvisibleButton("picture", size);
-    fibres_.show(table.swatch, disc_direction(light_),
+    fibres_.show(table.swatches.at(colourway_), disc_direction(lobe_.light, lobe_.lit),
                  glm::max(glm::ivec2(size.x * pixel_ratio, size.y * pixel_ratio), 1));
     const ImGuiIO& io = ImGui::GetIO();
     if (const glm::vec2 way(io.MouseDelta.x, io.MouseDelta.y);
@@ -57,34 +81,31 @@ void ClothPanel::draw_fibres(const ClothTable& table, float pixel_ratio) {
     ImGui::EndChild();
 }
 
-void ClothPanel::draw_light(const ClothTable& table) {
-    const std::shared_ptr<const TableBsdf>& bsdf = table.dyed.at("");
-    const bool stale =
-        mapped_ != bsdf || light_ != mapped_light_ || transmitted_ != mapped_transmitted_;
-    if (stale) {
-        const glm::vec3 from = disc_direction(light_);
+void ClothPanel::draw_light() {
+    if (lobe_ != mapped_) {
+        const TableBsdf& table = *lobe_.table;
+        const glm::vec3 from = disc_direction(lobe_.light, lobe_.lit);
         if (!map_)
             map_ = std::make_unique<Texture>();
-        map_->set(hemisphere_map(*bsdf, from, transmitted_, kMapSize), kMapSize, kMapSize);
-        weft_curve_ = intensity_profile(*bsdf, from, transmitted_, false, kCurvePoints);
-        warp_curve_ = intensity_profile(*bsdf, from, transmitted_, true, kCurvePoints);
-        mapped_ = bsdf;
-        mapped_light_ = light_;
-        mapped_transmitted_ = transmitted_;
+        map_->set(hemisphere_map(table, from, lobe_.seen, kMapSize), kMapSize, kMapSize);
+        weft_curve_ = intensity_profile(table, from, lobe_.seen, false, kCurvePoints);
+        warp_curve_ = intensity_profile(table, from, lobe_.seen, true, kCurvePoints);
+        mapped_ = lobe_;
     }
     const float side = 10 * ImGui::GetFontSize();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImGui::InvisibleButton("map", {side, side});
     if (ImGui::IsItemActive()) {
         const ImVec2 mouse = ImGui::GetIO().MousePos;
-        light_ = {2 * (mouse.x - corner.x) / side - 1, 1 - 2 * (mouse.y - corner.y) / side};
-        light_ /= std::max(1.0f, glm::length(light_));
+        lobe_.light = {2 * (mouse.x - corner.x) / side - 1, 1 - 2 * (mouse.y - corner.y) / side};
+        lobe_.light /= std::max(1.0f, glm::length(lobe_.light));
     }
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddImage(map_->id(), corner, {corner.x + side, corner.y + side});
-    const ImVec2 lamp(corner.x + 0.5f * side * (1 + light_.x),
-                      corner.y + 0.5f * side * (1 - light_.y));
-    list.AddCircle(lamp, 0.35f * ImGui::GetFontSize(), IM_COL32(255, 220, 90, 255), 0, 2);
+    const ImVec2 lamp(corner.x + 0.5f * side * (1 + lobe_.light.x),
+                      corner.y + 0.5f * side * (1 - lobe_.light.y));
+    const int strength = lobe_.lit == lobe_.seen ? 255 : 110; // or it stands behind the cloth
+    list.AddCircle(lamp, 0.35f * ImGui::GetFontSize(), IM_COL32(255, 220, 90, strength), 0, 2);
     ImGui::SameLine();
     ImGui::BeginGroup();
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x);
@@ -92,9 +113,10 @@ void ClothPanel::draw_light(const ClothTable& table) {
     draw_curve("along the warp", warp_curve_);
     ImGui::PopItemWidth();
     ImGui::EndGroup();
-    ImGui::Checkbox("transmitted", &transmitted_);
+    pick_side("lit", lobe_.lit);
     ImGui::SameLine();
-    ImGui::TextDisabled("light from the ring, drag it");
+    ImGui::TextDisabled("drag the ring");
+    pick_side("seen", lobe_.seen);
 }
 
 void ClothPanel::draw_save(Session& session, std::filesystem::path& file) {
@@ -119,6 +141,7 @@ void ClothPanel::draw(Session& session, std::filesystem::path& file, float pixel
     const ClothDocument& document = found->second;
     if (file_ != file) {
         file_ = file;
+        colourway_ = worn_colourway_ = "";
         const std::string name = file.stem().string() + "-edited.toml";
         std::strncpy(target_, name.c_str(), sizeof target_ - 1);
     }
@@ -145,10 +168,17 @@ void ClothPanel::draw(Session& session, std::filesystem::path& file, float pixel
             session.edit_cloth(file, cloth_);
         draw_save(session, file);
     }
-    if (table && ImGui::CollapsingHeader("Fibres", ImGuiTreeNodeFlags_DefaultOpen))
-        draw_fibres(*table, pixel_ratio);
-    if (table && ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen))
-        draw_light(*table);
+    if (table) {
+        follow_worn_colourway(session);
+        if (!table->dyed.contains(colourway_))
+            colourway_.clear();
+        pick_colourway(*table, colourway_);
+        lobe_.table = table->dyed.at(colourway_);
+        if (ImGui::CollapsingHeader("Fibres", ImGuiTreeNodeFlags_DefaultOpen))
+            draw_fibres(*table, pixel_ratio);
+        if (ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen))
+            draw_light();
+    }
     ImGui::PopItemWidth();
 }
 

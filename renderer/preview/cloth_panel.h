@@ -14,8 +14,9 @@ class ClothPanel {
     void draw(Session& session, std::filesystem::path& file, float pixel_ratio);
 
   private:
+    void follow_worn_colourway(const Session& session);
     void draw_fibres(const ClothTable& table, float pixel_ratio);
-    void draw_light(const ClothTable& table);
+    void draw_light();
     void draw_save(Session& session, std::filesystem::path& file);
 
     std::filesystem::path file_;
@@ -24,11 +25,17 @@ class ClothPanel {
     char target_[512] = {};              ///< name of the file to save as
     std::filesystem::path refused_;      ///< there is such a file: asked again, it is overwritten
 
-    glm::vec2 light_{-0.5f, 0}; ///< where it comes from, on the disc (hemisphere.h)
-    bool transmitted_ = false;
-    std::shared_ptr<const TableBsdf> mapped_; ///< of which the map and curves are
-    glm::vec2 mapped_light_{0};
-    bool mapped_transmitted_ = false;
+    /// What disc and curves are of.
+    struct Lobe {
+        std::shared_ptr<const TableBsdf> table;
+        glm::vec2 light{-0.5f, 0}; ///< where it comes from, on the disc (hemisphere.h)
+        Side lit = Side::front, seen = Side::front;
+
+        bool operator==(const Lobe&) const = default;
+    };
+    Lobe lobe_, mapped_;         ///< as chosen, and as it is drawn
+    std::string colourway_;      ///< of disc, curves and fibres
+    std::string worn_colourway_; ///< the last that was worn, which it follows
     std::unique_ptr<Texture> map_;
     FibreView fibres_;
     std::shared_ptr<const TracedPicture> shown_fibres_;

@@ -37,7 +37,7 @@ ClothTable ready(BsdfTable table, std::shared_ptr<const Cloth> cloth, const std:
 ClothTable ready(const RisingMeasurement& measurement, const std::filesystem::path& file,
                  const StopSignal& stopped = {}) {
     ClothTable made = ready(measurement.table(), measurement.cloth(), file.string(), stopped);
-    made.swatch = measurement.swatch();
+    made.swatches = measurement.swatches();
     return made;
 }
 

@@ -19,10 +19,10 @@ struct ClothTable {
     std::shared_ptr<const Cloth> cloth;     ///< nothing for a table that was stored
     std::shared_ptr<const BsdfTable> table; ///< of all colourways
     std::map<std::string, std::shared_ptr<const TableBsdf>> dyed; ///< by colourway; "" = its own
-    std::shared_ptr<const FibreSwatch> swatch; ///< its fibres; nothing for a stored table
-    std::set<std::filesystem::path> inputs;    ///< the files that it was read from, if any
-    double accuracy = 0;                       ///< ε
-    double seconds = 0;                        ///< since it was asked for
+    RisingMeasurement::Swatches swatches;   ///< its fibres by colourway; none of a stored table
+    std::set<std::filesystem::path> inputs; ///< the files that it was read from, if any
+    double accuracy = 0;                    ///< ε
+    double seconds = 0;                     ///< since it was asked for
 };
 
 /// Reads a `.bsdf`, or measures a `.toml` or `.wif` in haste.

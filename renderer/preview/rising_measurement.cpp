@@ -52,10 +52,16 @@ RisingMeasurement::set_up(bool hasty, const GoniophotometerSettings& settings) c
         std::make_shared<const kernel::FibreTracer>(element.fibres, settings.stopped);
     ClothOptics optics = cloth_optics(*cloth_, *tracer, settings);
     const double side = kSwatchThreads * 1e4 / std::min(cloth_->ends_per_cm, cloth_->picks_per_cm);
-    auto swatch =
-        std::make_shared<const FibreSwatch>(tracer, optics.fibres, cloth_->bands, glm::dvec2(side));
+    Swatches swatches;
+    const auto add = [&](const std::string& colourway, const std::vector<FibreOptics>& fibres) {
+        swatches[colourway] =
+            std::make_shared<const FibreSwatch>(tracer, fibres, cloth_->bands, glm::dvec2(side));
+    };
+    add("", optics.fibres);
+    for (const auto& [name, dyes] : optics.colourways)
+        add(name, optics.dyed(dyes));
     return std::unique_ptr<const Bench>(
-        new Bench{hasty, tracer, std::move(optics), std::move(swatch)});
+        new Bench{hasty, tracer, facing_yarns(*tracer), std::move(optics), std::move(swatches)});
 }
 
 void RisingMeasurement::advance(const StopSignal& stopped, const MeasuringWatch& watch) {
@@ -69,7 +75,7 @@ void RisingMeasurement::advance(const StopSignal& stopped, const MeasuringWatch&
         bench_ = set_up(hasty, settings);
     settings.seed = static_cast<uint64_t>(rounds_);
     BsdfTable table = make_full_table(cloth_->bands, true, true);
-    table.exit_axis = facing_yarns(*bench_->tracer);
+    table.exit_axis = bench_->facing_yarns;
     measure(*bench_->tracer, bench_->optics.fibres, settings, table, watch, {},
             bench_->optics.colourways);
     if (rounds_ <= 1)

@@ -3,6 +3,7 @@
 #include "renderer/scene/shape/fibre_swatch.h"
 #include "vgsp/measure_cloth.h"
 
+#include <map>
 #include <memory>
 
 namespace rapport {
@@ -18,6 +19,8 @@ class RisingMeasurement {
   public:
     explicit RisingMeasurement(std::shared_ptr<const Cloth> cloth) : cloth_(std::move(cloth)) {}
 
+    using Swatches = std::map<std::string, std::shared_ptr<const FibreSwatch>>;
+
     /// One more round. Throws FileError for a cloth that cannot exist, and Stopped, leaving all as
     /// it was.
     void advance(const StopSignal& stopped, const MeasuringWatch& watch = {});
@@ -27,15 +30,17 @@ class RisingMeasurement {
     const BsdfTable& table() const { return table_; }
     uint64_t paths() const { return table_.paths.empty() ? 0 : table_.paths[0]; } ///< per direction
     const std::shared_ptr<const Cloth>& cloth() const { return cloth_; }
-    /// The fibres of the last round, a square of some threads to look at; nothing before the first.
-    std::shared_ptr<const FibreSwatch> swatch() const { return bench_ ? bench_->swatch : nullptr; }
+    /// The fibres of the last round by colourway, "" being as they are otherwise: a square of some
+    /// threads to look at; nothing before the first.
+    Swatches swatches() const { return bench_ ? bench_->swatches : Swatches(); }
 
   private:
     struct Bench {
         bool hasty;
         std::shared_ptr<const kernel::FibreTracer> tracer;
+        std::array<ConeAxis, 2> facing_yarns;
         ClothOptics optics;
-        std::shared_ptr<const FibreSwatch> swatch;
+        Swatches swatches;
     };
     std::unique_ptr<const Bench> set_up(bool hasty, const GoniophotometerSettings& settings) const;
 

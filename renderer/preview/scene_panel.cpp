@@ -1,5 +1,7 @@
 #include "renderer/preview/scene_panel.h"
 
+#include "renderer/preview/cloth_controls.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <imgui.h>
@@ -38,21 +40,6 @@ bool pick_file(const char* label, std::filesystem::path& file,
     return picked;
 }
 
-bool pick_colourway(const ClothDocument* document, std::string& colourway) {
-    if (!document || !document->table || document->table->dyed.size() < 2)
-        return false;
-    bool picked = false;
-    if (!ImGui::BeginCombo("colourway", colourway.empty() ? "its own" : colourway.c_str()))
-        return false;
-    for (const auto& [name, table] : document->table->dyed)
-        if (ImGui::Selectable(name.empty() ? "its own" : name.c_str(), name == colourway)) {
-            picked = name != colourway;
-            colourway = name;
-        }
-    ImGui::EndCombo();
-    return picked;
-}
-
 const ClothDocument* document_of(const Session& session, const std::filesystem::path& file) {
     const auto found = session.documents().find(file);
     return found == session.documents().end() ? nullptr : &found->second;
@@ -76,7 +63,8 @@ void draw_garment(Session& session, std::filesystem::path& selected) {
             choice.colourway.clear();
         if (!choice.file.empty()) {
             const ClothDocument* document = document_of(session, choice.file);
-            changed |= pick_colourway(document, choice.colourway);
+            if (document && document->table)
+                changed |= pick_colourway(*document->table, choice.colourway);
             changed |= ImGui::SliderFloat("rotation", &choice.rotation, -90, 90, "%.0f°");
             if (document) // a line whether told or not, and one only: the controls below stay
                 ImGui::TextColored(kGrey, "%s", table_line(*document).c_str());
@@ -130,7 +118,7 @@ void draw_progress(const Session& session) {
                          picture->samples, picture->samples == 1 ? "" : "s"));
         if (picture->samples > 1)
             text(fmt::format("noise {:.3f}", picture->noise));
-        text(fmt::format("{:.2f} M paths/s", picture->paths_per_second * 1e-6));
+        text(fmt::format("{:.2f} Mrays/s", picture->rays_per_second * 1e-6));
     }
     if (const std::filesystem::path file = session.worker().working_on(); !file.empty())
         text("measuring " + file.filename().string());

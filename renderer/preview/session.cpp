@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace rapport {
 namespace {
@@ -27,6 +28,12 @@ Box subject_of(const Scene& scene) {
             return box;
     }
     return {};
+}
+
+/// The size of the film is the window's business.
+bool same_but_for_size(Camera a, const Camera& b) {
+    a.resolution = b.resolution;
+    return a == b;
 }
 
 bool ready(const auto& future) {
@@ -67,10 +74,18 @@ void Session::take(Reload reload) {
     }
     scene_inputs_ = std::move(reload.inputs);
     const LoadedScene& loaded = reload.loaded;
-    base_ = worn_ = loaded.scene;
+    const std::shared_ptr<const Scene> before = std::exchange(base_, loaded.scene);
+    worn_ = base_;
     subject_ = subject_of(*base_);
-    if (!camera_)
+    // A person's own view stays until the file tells of another; a bare model tells of none.
+    const bool has_camera = lower_extension(source_.path) == ".pbrt";
+    if (!before) {
         camera_.emplace(base_->camera, subject_);
+    } else if (has_camera && !same_but_for_size(before->camera, base_->camera)) {
+        const glm::ivec2 size = camera_->camera().resolution;
+        camera_.emplace(base_->camera, subject_);
+        camera_->resize(size);
+    }
     wearers_ = rapport::wearers(*base_);
     light_kinds_ = rapport::light_kinds(*base_);
     choices_ = worn_cloths(*base_);

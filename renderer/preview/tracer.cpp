@@ -153,7 +153,7 @@ Film& Tracer::film_for(int scale, const glm::ivec2& resolution) {
 
 bool Tracer::pass(const View& view, const CameraRays& rays, Film& film, bool first) {
     const Clock::time_point start = Clock::now();
-    std::atomic<uint64_t> paths = 0, left_out = 0;
+    std::atomic<uint64_t> paths = 0, traced = 0, left_out = 0;
     parallel_for(film.tiles().size(), [&](size_t i) {
         if (closing_ || (outdated(view) && !(first && seconds_since(start) < kPatience))) {
             ++left_out;
@@ -162,12 +162,15 @@ bool Tracer::pass(const View& view, const CameraRays& rays, Film& film, bool fir
         Film::Tile& tile = film.tiles()[i];
         if (tile.samples == 0)
             film.clear(tile);
-        sample_tile(*view.scene, rays, film, tile, tile.samples + 1);
+        traced += sample_tile(*view.scene, rays, film, tile, tile.samples + 1);
         const glm::ivec2 size = tile.end - tile.first;
         paths += static_cast<uint64_t>(size.x) * size.y;
     });
-    if (paths > 0)
-        paths_per_second_ = static_cast<double>(paths) / std::max(seconds_since(start), 1e-6);
+    if (paths > 0) {
+        const double seconds = std::max(seconds_since(start), 1e-6);
+        paths_per_second_ = static_cast<double>(paths) / seconds;
+        rays_per_second_ = static_cast<double>(traced) / seconds;
+    }
     return left_out == 0;
 }
 
@@ -181,7 +184,7 @@ void Tracer::publish(const View& view, const Camera& camera, const Film& film, i
     picture->samples = samples;
     picture->noise =
         samples > 1 ? film.noise().relative() : std::numeric_limits<double>::infinity();
-    picture->paths_per_second = paths_per_second_;
+    picture->rays_per_second = rays_per_second_;
     const std::scoped_lock lock(mutex_);
     picture_ = std::move(picture);
 }

@@ -20,7 +20,7 @@ struct TracedPicture {
     int scale = 1;     ///< pixels of the view along the side of a pixel here
     int samples = 0;   ///< of each pixel
     double noise = 0;  ///< Film::Noise::relative of the whole; infinite from one sample
-    double paths_per_second = 0;
+    double rays_per_second = 0;
 };
 
 /// Renders in the background at rising quality: first at a resolution that takes a fifteenth of a
@@ -77,7 +77,7 @@ class Tracer {
     std::string error_;
     double seconds_to_stop_ = 0;
     // Of the tracer's thread alone.
-    double paths_per_second_;
+    double paths_per_second_, rays_per_second_ = 0; ///< of the last pass
     std::map<int, Film> films_; ///< by scale, kept because a large film takes long to allocate
     std::thread thread_;        ///< last, for it uses all others
 };

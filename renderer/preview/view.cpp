@@ -17,6 +17,10 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
                                     ImGuiWindowFlags_NoSavedSettings |
                                     ImGuiWindowFlags_NoBringToFrontOnFocus;
 
+float panel_width(float window_width, float font_size) {
+    return std::min(kPanelWidth * font_size, 0.3f * window_width);
+}
+
 /// The picture on the screen: as large as its part of the window, renewed when there is another.
 class PictureArea {
   public:
@@ -124,7 +128,7 @@ class View {
   private:
     void draw() {
         const float width = ImGui::GetIO().DisplaySize.x, ratio = window_.pixel_ratio();
-        const float side = std::min(kPanelWidth * ImGui::GetFontSize(), 0.3f * width);
+        const float side = panel_width(width, ImGui::GetFontSize());
         part("scene", 0, side, [&] { draw_scene_panel(session_, selected_); });
         ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
         part("picture", side, width - 2 * side, [&] { area_.draw(session_, ratio); });
@@ -150,14 +154,22 @@ class View {
 
 } // namespace
 
-void view(Session& session, const glm::ivec2& size, const ViewRun& run) {
+std::vector<std::string> view(Session& session, const glm::ivec2& size, const ViewRun& run) {
     constexpr int kMostLosses = 3; // more are a driver that will not work
+    // The picture is traced while the window opens; on a finer screen it is larger, of one shape.
+    const auto width = static_cast<float>(size.x);
+    session.resize({width - 2 * panel_width(width, Window::kFontSize), size.y});
+    session.tick();
     glm::ivec2 opened = size;
     int frame = 0;
     for (int losses = 0;; ++losses) {
         View view(session, opened);
-        if (!view.run(run, frame))
-            return;
+        if (!view.run(run, frame)) {
+            const auto shown = static_cast<std::ptrdiff_t>(session.notes().size());
+            if (session.edited())
+                session.rescue("closed with edits that had not been saved");
+            return {session.notes().begin() + shown, session.notes().end()};
+        }
         session.rescue("the graphics driver was reset: the window is a new one");
         if (losses == kMostLosses)
             throw FileError("window", "", "a graphics driver that keeps its pictures",

@@ -13,8 +13,10 @@ struct ViewRun {
     std::function<void(int)> before_frame = {}; ///< called with the number of each, from 0
 };
 
-/// Opens a window of `size` on the session and runs it; where the graphics driver loses it, edited
-/// cloths are saved and another window goes on. FileError where there is no display.
-void view(Session& session, const glm::ivec2& size, const ViewRun& run);
+/// Opens a window of `size` on the session and runs it until it is closed. Edited cloths are saved
+/// then, and where the graphics driver loses the window, after which another one goes on. Returns
+/// the notes on those that were saved at the end, which no window shows. FileError where there is
+/// no display.
+std::vector<std::string> view(Session& session, const glm::ivec2& size, const ViewRun& run);
 
 } // namespace rapport

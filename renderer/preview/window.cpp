@@ -18,8 +18,6 @@
 namespace rapport {
 namespace {
 
-constexpr float kFontSize = 14;
-
 std::string reason() {
     const char* text = nullptr;
     glfwGetError(&text);
@@ -27,14 +25,14 @@ std::string reason() {
 }
 
 /// Letters of the font that the panels use: Latin, Greek, and signs such as × and ².
-void load_font(float scale) {
+void load_font(float size) {
     static const ImWchar ranges[] = {0x20, 0xFF, 0x370, 0x3FF, 0x2010, 0x2033, 0x2190, 0x21FF, 0};
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
     if (std::filesystem::exists(kFont)) {
-        fonts.AddFontFromFileTTF(kFont, std::round(kFontSize * scale), nullptr, ranges);
+        fonts.AddFontFromFileTTF(kFont, size, nullptr, ranges);
     } else {
         ImFontConfig config;
-        config.SizePixels = std::round(kFontSize * scale);
+        config.SizePixels = size;
         fonts.AddFontDefault(&config);
     }
 }
@@ -126,7 +124,7 @@ glm::ivec2 Window::size() const {
 
 void Window::set_text_scale(float scale, float pixels) {
     ImGui::GetIO().Fonts->Clear();
-    load_font(scale * pixels);
+    load_font(std::round(kFontSize * scale * pixels));
     ImGui::GetIO().FontGlobalScale = 1 / pixels;
     set_style(scale);
     ImGui_ImplOpenGL3_DestroyFontsTexture();

@@ -13,6 +13,8 @@ namespace rapport {
 /// A window with OpenGL 3.3 and Dear ImGui, which draws all that is seen in it. One at a time.
 class Window {
   public:
+    static constexpr float kFontSize = 14; ///< on a screen of 96 dpi
+
     /// FileError where there is no display, or none with OpenGL 3.3.
     Window(const std::string& title, const glm::ivec2& size);
     Window(const Window&) = delete;

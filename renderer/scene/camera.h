@@ -15,6 +15,8 @@ struct Camera {
     glm::vec4 screen_window{0}; ///< x0, x1, y0, y1; all 0 = from the aspect ratio
     glm::ivec2 resolution{1280, 720};
 
+    bool operator==(const Camera&) const = default;
+
     /// The unit-direction ray through film position `pixel` (continuous, y down).
     kernel::Ray ray(const glm::vec2& pixel) const;
     /// Length in pixels of the segment from `a` to `b` if it stood square to the view at its

@@ -61,6 +61,18 @@ TEST(ClosedScene, SunOnAPlane) {
     EXPECT_LT(compare(image, even(image, truth)).max_absolute, 1e-6);
 }
 
+/// To the plane, to the sun, and on into the sky, of which a path without scattering has the first.
+TEST(ClosedScene, RaysOfAPathUnderTheSun) {
+    for (const auto& [depth, rays] : {std::pair(0, 1), {1, 3}}) {
+        const Scene scene({tests::surface(level_square(5, 0), tests::diffuse(0.5f))},
+                          {tests::sun(3, {0, 0, 1})}, kSpot, settings(1, depth));
+        Film film(kSpot.resolution);
+        Film::Tile& tile = film.tiles()[0];
+        const glm::ivec2 size = tile.end - tile.first;
+        EXPECT_EQ(sample_tile(scene, CameraRays(kSpot), film, tile, 2), rays * 2 * size.x * size.y);
+    }
+}
+
 TEST(ClosedScene, LampOverAPlane) {
     for (const float height : {0.5f, 2.0f}) {
         const double truth = 2 * irradiance_below(1, height) * 0.5 / kPi;

@@ -46,11 +46,13 @@ class ViewWindow : public testing::Test {
             GTEST_SKIP() << "Xvfb (Debian: xvfb) is not here";
         display_.emplace();
         keep_driver();
+        std::filesystem::current_path(working_.path()); // where unsaved edits are left
     }
     void TearDown() override { std::filesystem::current_path(folder_); }
     static GLFWwindow* window() { return glfwGetCurrentContext(); }
 
     const std::filesystem::path folder_ = std::filesystem::current_path();
+    const tests::TemporaryFolder working_;
     std::optional<tests::VirtualDisplay> display_;
 };
 
@@ -102,6 +104,27 @@ TEST_F(ViewWindow, ALostOneIsReplacedAndTheEditedClothSaved) {
     EXPECT_THROW(view(session, {400, 300}, {12, {}, [](int) { reset_graphics(1); }}), FileError);
 }
 
+TEST_F(ViewWindow, WhatNobodySavedIsWrittenWhenItCloses) {
+    const SquareScene files(SquareScene::Worn::measured);
+    Session session({files.scene()});
+    const auto document = [&] { return session.documents().at(files.cloth()); };
+    WindowHand idle;
+    idle.wait_until([&] { return session.picture() != nullptr; });
+    EXPECT_TRUE(idle.use(session).empty());
+    EXPECT_FALSE(std::filesystem::exists("cloth-rescued.toml"));
+
+    WindowHand hand;
+    hand.point({"cloth", {"ends"}}, {0.1f, 0.5f});
+    hand.click();
+    hand.wait_until([&] { return document().edited; });
+    const std::vector<std::string> notes = hand.use(session);
+    ASSERT_EQ(notes.size(), 2u);
+    EXPECT_EQ(notes[1], "saved cloth-rescued.toml");
+    EXPECT_EQ(read_cloth("cloth-rescued.toml").ends_per_cm, document().cloth->ends_per_cm);
+    EXPECT_LT(document().cloth->ends_per_cm, 19);
+    EXPECT_EQ(read_cloth(files.cloth()).ends_per_cm, 20); // which is left alone
+}
+
 TEST_F(ViewWindow, OutlivesAStormOfSizesAndBeingHidden) {
     const SquareScene files(SquareScene::Worn::stored);
     Session session({files.scene()});
@@ -124,6 +147,14 @@ TEST_F(ViewWindow, OutlivesAStormOfSizesAndBeingHidden) {
     const auto picture = next_picture(session, 1);
     ASSERT_TRUE(picture);
     EXPECT_EQ(picture->image.height, 480);
+}
+
+TEST_F(ViewWindow, ThePictureIsTracedWhileItOpens) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    std::vector<uint64_t> views;
+    view(session, {900, 600}, {3, {}, [&](int) { views.push_back(session.tracer().latest()); }});
+    EXPECT_EQ(views, std::vector<uint64_t>(3, 1)); // begun before, and never begun again
 }
 
 TEST_F(ViewWindow, TheMouseTurnsAndTheWheelBringsNearer) {
@@ -289,6 +320,121 @@ TEST_F(ViewWindow, ThePanelGoesOnWithTheFileThatItSaved) {
     EXPECT_LT(read_cloth(saved).ends_per_cm, 19);
     EXPECT_EQ(read_cloth(saved).picks_per_cm, 20);
     EXPECT_LT(session.documents().at(saved).cloth->picks_per_cm, 19);
+}
+
+/// Clicks a line of the combo that has just been clicked.
+void pick(WindowHand& hand, const WindowHand::Place& combo, const std::string& line) {
+    hand.point(combo);
+    hand.click();
+    hand.point({"##Combo_00", {line}}, {0.1f, 0.5f});
+    hand.click();
+}
+
+TEST_F(ViewWindow, AMaterialTakesAnotherClothAndThatOfTheSceneAgain) {
+    const SquareScene files(SquareScene::Worn::measured);
+    const std::filesystem::path other = std::filesystem::weakly_canonical(files / "other.toml");
+    tests::write_bytes(other, tests::coarse_cloth("0.6"));
+    Session session({files.scene()});
+    const ClothChoice own = session.choices().at("Body");
+    const WindowHand::Place combo{"scene", {"Body", "cloth"}};
+    WindowHand hand;
+    pick(hand, combo, "other.toml##" + other.string());
+    hand.wait_until([&] { return session.choices().at("Body").file == other; });
+    hand.point({"scene", {"Body", "rotation"}}, {0.9f, 0.5f});
+    hand.click();
+    hand.wait_until([&] { return session.choices().at("Body").rotation > 45; });
+    pick(hand, combo, "as in the scene");
+    hand.wait_until([&] { return session.choices().at("Body") == own; });
+    hand.use(session);
+}
+
+/// The pure colour that is nearest to what the window shows there. Mesa keeps the buffer that it
+/// has shown.
+glm::ivec3 pixel(const glm::vec2& place) {
+    glm::ivec2 size;
+    glfwGetFramebufferSize(glfwGetCurrentContext(), &size.x, &size.y);
+    std::array<uint8_t, 4> colour{};
+    glReadPixels(static_cast<int>(place.x), size.y - 1 - static_cast<int>(place.y), 1, 1, GL_RGBA,
+                 GL_UNSIGNED_BYTE, colour.data());
+    const auto pure = [](uint8_t channel) { return channel > 127 ? 255 : 0; };
+    return {pure(colour[0]), pure(colour[1]), pure(colour[2])};
+}
+
+constexpr glm::ivec3 kRed{255, 0, 0}, kGreen{0, 255, 0}, kBlue{0, 0, 255}, kYellow{255, 255, 0},
+    kWhite{255, 255, 255};
+
+/// A table that glows in the colour of `of`.
+BsdfTable glowing(const std::function<glm::ivec3(const IncidentDirection&, bool to_face)>& of) {
+    return tests::synthetic_table([=](const auto& from, const glm::dvec3& out, size_t band) {
+        return 0.05 / 255 * of(from, out.z > 0)[static_cast<int>(band)];
+    });
+}
+
+TEST_F(ViewWindow, TheDiscIsOfTheSidesThatAreChosenAndOfTheLightThatIsDragged) {
+    const SquareScene files(SquareScene::Worn::stored);
+    write_table(glowing([](const IncidentDirection& from, bool to_face) {
+                    if (std::sin(from.theta) * std::cos(from.phi) > 0.3)
+                        return kWhite;
+                    if (from.side == Side::front)
+                        return to_face ? kRed : kGreen;
+                    return to_face ? kYellow : kBlue;
+                }),
+                files.table());
+    Session session({files.scene()});
+    const WindowHand::Place disc{"cloth", {"map"}};
+    glm::vec2 middle;
+    std::vector<glm::ivec3> colours;
+    WindowHand hand;
+    const auto note = [&] {
+        hand.then([] {});
+        hand.then([&] { colours.push_back(pixel(middle)); });
+    };
+    const auto click = [&](const char* what, const char* side) {
+        hand.point({"cloth", {what, side}});
+        hand.click();
+        note();
+    };
+    hand.point(disc);
+    hand.then([&] { middle = hand.mouse(); });
+    note();
+    click("seen", "back");
+    click("lit", "back");
+    click("seen", "face");
+    hand.point(disc, {0.3f, 0.5f});
+    hand.press();
+    hand.move({60, 0});
+    hand.move({20, 0});
+    hand.release();
+    note();
+    hand.use(session);
+    EXPECT_EQ(colours, (std::vector{kRed, kGreen, kBlue, kYellow, kWhite}));
+}
+
+TEST_F(ViewWindow, TheDiscIsOfTheColourwayThatIsChosenOrWorn) {
+    const SquareScene files(SquareScene::Worn::stored);
+    BsdfTable table = glowing([](const auto&, bool) { return kRed; });
+    table.colourways["blue"] = glowing([](const auto&, bool) { return kBlue; });
+    table.colourways["green"] = glowing([](const auto&, bool) { return kGreen; });
+    write_table(table, files.table());
+    Session session({files.scene()});
+    glm::vec2 middle;
+    std::vector<glm::ivec3> colours;
+    WindowHand hand;
+    const auto note = [&] {
+        hand.then([] {});
+        hand.then([&] { colours.push_back(pixel(middle)); });
+    };
+    hand.point({"cloth", {"map"}});
+    hand.then([&] { middle = hand.mouse(); });
+    note();
+    pick(hand, {"cloth", {"colourway"}}, "blue");
+    note();
+    hand.then([&] { EXPECT_EQ(session.choices().at("Body").colourway, ""); }); // looked at only
+    pick(hand, {"scene", {"Body", "colourway"}}, "green");
+    hand.wait_until([&] { return session.choices().at("Body").colourway == "green"; });
+    note();
+    hand.use(session);
+    EXPECT_EQ(colours, (std::vector{kRed, kBlue, kGreen}));
 }
 
 TEST_F(ViewWindow, TextFollowsTheScale) {

@@ -37,16 +37,21 @@ class WindowHand {
 
     /// Moves the mouse to the point of a control that is so far from its upper left corner, of 1.
     void point(const Place& place, const glm::vec2& at = {0.5f, 0.5f}) {
-        then([=] { look_for(place); });
-        then([] {}); // a frame in which ImGui notes where it is
-        then([=, this] {
-            const ImGuiWindow* const part = ImGui::FindWindowByName(place.part.c_str());
+        constexpr int kMostFrames = 20; // in which a list opens and ImGui notes where the line is
+        steps_.push_back([=, this, frames = 0]() mutable {
+            ImGuiWindow* const part = ImGui::FindWindowByName(place.part.c_str());
             const ImGuiContext& context = *ImGui::GetCurrentContext();
-            if (!part || context.NavId != id(place) || !context.NavIdIsAlive)
-                return void(ADD_FAILURE() << "there is no " << place.labels.back());
-            const ImRect box = ImGui::WindowRectRelToAbs(const_cast<ImGuiWindow*>(part),
-                                                         part->NavRectRel[ImGuiNavLayer_Main]);
-            move_to({box.Min.x + at.x * box.GetWidth(), box.Min.y + at.y * box.GetHeight()});
+            if (part && context.NavId == id(place) && context.NavIdIsAlive) {
+                const ImRect box =
+                    ImGui::WindowRectRelToAbs(part, part->NavRectRel[ImGuiNavLayer_Main]);
+                move_to({box.Min.x + at.x * box.GetWidth(), box.Min.y + at.y * box.GetHeight()});
+                return true;
+            }
+            look_for(place);
+            if (++frames < kMostFrames)
+                return false;
+            ADD_FAILURE() << "there is no " << place.labels.back();
+            return true;
         });
         then([] {});
     }
@@ -74,22 +79,25 @@ class WindowHand {
 
     const glm::vec2& mouse() const { return mouse_; }
 
-    /// Opens a window of that size on the session and does all of it.
-    void use(Session& session, const glm::ivec2& size = {1200, 900}) {
+    /// Opens a window of that size on the session and does all of it. Returns what `view` does.
+    std::vector<std::string> use(Session& session, const glm::ivec2& size = {1200, 900}) {
         using Clock = std::chrono::steady_clock;
-        const Clock::time_point latest = Clock::now() + std::chrono::minutes(1);
+        const Clock::time_point latest =
+            Clock::now() + std::chrono::minutes(5); // as tick_until does
         size_t next = 0;
-        view(session, size, {0, {}, [&](int frame) {
-                                 if (frame == 0)
-                                     glfwFocusWindow(glfwGetCurrentContext());
-                                 if (frame < 2)
-                                     return; // what there is to point at has to be drawn first
-                                 if (next == steps_.size() || Clock::now() > latest)
-                                     glfwSetWindowShouldClose(glfwGetCurrentContext(), GLFW_TRUE);
-                                 else if (steps_[next]())
-                                     ++next;
-                             }});
+        const auto before_frame = [&](int frame) {
+            if (frame == 0)
+                glfwFocusWindow(glfwGetCurrentContext());
+            if (frame < 2)
+                return; // what there is to point at has to be drawn first
+            if (next == steps_.size() || Clock::now() > latest)
+                glfwSetWindowShouldClose(glfwGetCurrentContext(), GLFW_TRUE);
+            else if (steps_[next]())
+                ++next;
+        };
+        const std::vector<std::string> notes = view(session, size, {0, {}, before_frame});
         EXPECT_EQ(next, steps_.size()) << "the window closed before the hand was done";
+        return notes;
     }
 
   private:

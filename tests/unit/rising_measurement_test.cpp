@@ -1,6 +1,7 @@
 #include "renderer/preview/rising_measurement.h"
+#include "tests/support/sessions.h"
 
-#include <gtest/gtest.h>
+#include <atomic>
 
 namespace rapport {
 namespace {
@@ -14,6 +15,37 @@ TEST(RisingMeasurement, ChartsExitsAboutTheYarnsThatASideShows) {
         satin.advance({});
         EXPECT_EQ(satin.table().exit_axis,
                   (std::array<ConeAxis, 2>{ConeAxis::warp, ConeAxis::weft}));
+    }
+}
+
+/// Whatever it is at, and as if nothing had been: nobody is let wait for the end of a stage.
+TEST(RisingMeasurement, StopsAtOnceWhereverItIs) {
+    const tests::SquareScene files(tests::SquareScene::Worn::measured);
+    const auto cloth = std::make_shared<const Cloth>(read_cloth(files.cloth()));
+    std::atomic<uint64_t> asked = 0;
+    RisingMeasurement undisturbed(cloth);
+    undisturbed.advance([&] {
+        ++asked;
+        return false;
+    });
+    constexpr uint64_t kColourPaths = 4096, kColours = 6, kBisections = 60;
+    const BsdfTable& table = undisturbed.table();
+    const uint64_t all = asked;
+    EXPECT_GT(all,
+              kColourPaths + kColours * kBisections + undisturbed.paths() * table.directions());
+
+    constexpr uint64_t kStops = 20;
+    for (uint64_t i = 0; i < kStops; ++i) {
+        RisingMeasurement stopped(cloth);
+        asked = 0;
+        const uint64_t last = all * i / kStops;
+        EXPECT_THROW(stopped.advance([&] { return asked++ >= last; }), Stopped);
+        EXPECT_LE(asked, last + 64); // once by each thread
+        EXPECT_EQ(stopped.rounds(), 0);
+        if (i % 8 != 3)
+            continue;
+        stopped.advance({});
+        EXPECT_EQ(stopped.table().intensity, table.intensity);
     }
 }
 

@@ -238,6 +238,49 @@ TEST(Session, KeepsTheOldSceneUntilABrokenOneIsMended) {
     EXPECT_GT(difference(next_picture(session, 4)->image, before), 0.05);
 }
 
+TEST(Session, ThePersonsOwnViewStaysUntilTheFileHasAnotherCamera) {
+    const SquareScene files(SquareScene::Worn::stored);
+    Session session({files.scene()});
+    session.resize({80, 60});
+    const auto reload = [&](Session& session, const std::filesystem::path& file,
+                            const std::string& bytes) {
+        const size_t told = session.notes().size();
+        tests::write_bytes(file, bytes);
+        tick_until(session, [&] { return session.notes().size() > told; });
+        EXPECT_EQ(session.error(), "");
+    };
+    std::string text = tests::read_bytes(files.scene());
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        text.replace(text.find(from), from.size(), to);
+    };
+    session.orbit({12, 5});
+    const Camera own = session.camera();
+    replace("[0.5 0.5 0.6]", "[0.1 0.1 0.1]");
+    replace("\"integer xresolution\" 64", "\"integer xresolution\" 100");
+    reload(session, files.scene(), text);
+    EXPECT_EQ(session.camera(), own);
+
+    replace("0.5 0.5 3 ", "0.5 0.5 4 ");
+    reload(session, files.scene(), text);
+    EXPECT_EQ(session.camera().to_world, load_scene({files.scene()}).scene->camera.to_world);
+    EXPECT_EQ(session.camera().resolution, glm::ivec2(80, 60));
+
+    session.orbit({3, 0}); // and once it has been taken it is an old one, too
+    const Camera turned = session.camera();
+    reload(session, files.scene(), text + "# the same camera\n");
+    EXPECT_EQ(session.camera(), turned);
+
+    // A bare model has no camera: that it is framed otherwise is none of its own.
+    Session bare({files / "square.glb"});
+    bare.orbit({12, 5});
+    const Camera of_model = bare.camera(), framed = bare.scene().camera;
+    tests::GltfWriter moved = tests::quad();
+    moved.json["nodes"][0]["scale"] = {3, 3, 3};
+    reload(bare, files / "square.glb", moved.glb());
+    EXPECT_EQ(bare.camera(), of_model);
+    EXPECT_NE(bare.scene().camera, framed);
+}
+
 TEST(Session, WhatASceneOrAClothIncludesIsReadAgainWhenItChanges) {
     const SquareScene files(SquareScene::Worn::stored);
     const std::string text = tests::read_bytes(files.scene());
@@ -344,35 +387,40 @@ TEST(FibreView, ShowsTheClothThatIsWornFromWhereItIsTurnedTo) {
         return last->image;
     };
     const glm::vec3 light = glm::normalize(glm::vec3(0.5f, 0, 1));
-    view.show(document().table->swatch, light, {48, 24});
+    view.show(document().table->swatches.at(""), light, {48, 24});
     const Image first = next();
     EXPECT_GT(mean(first, "R"), 0.01);
-    view.show(document().table->swatch, light, {48, 24}); // the same again
+    view.show(document().table->swatches.at(""), light, {48, 24}); // the same again
     EXPECT_EQ(view.picture()->view, last->view);
     view.orbit({10, 0});
     const Image turned = next();
     EXPECT_FALSE(compare(first, turned).agree);
     view.zoom(2);
     EXPECT_FALSE(compare(turned, next()).agree);
-    view.show(document().table->swatch, glm::vec3(0, 0, -1), {48, 24}); // from behind
+    view.show(document().table->swatches.at(""), glm::vec3(0, 0, -1), {48, 24}); // from behind
     EXPECT_FALSE(compare(turned, next()).agree);
 
     Cloth red = *document().cloth;
     red.warp.fibre.color = {0.75, 0.1, 0.1};
     red.weft.fibre.color = {0.75, 0.1, 0.1};
+    for (const char* yarn : {"warp", "weft"})
+        red.colourways["green"][yarn].color = {0.1, 0.75, 0.1};
     session.edit_cloth(files.cloth(), red);
     tick_until(session, [&] { return !document().waiting; });
     EXPECT_EQ(document().error, "");
-    view.show(document().table->swatch, light, {48, 24});
+    view.show(document().table->swatches.at(""), light, {48, 24});
     const Image dyed = next();
     EXPECT_GT(mean(dyed, "albedo.R"), 2 * mean(dyed, "albedo.G"));
+    view.show(document().table->swatches.at("green"), light, {48, 24});
+    const Image green = next();
+    EXPECT_GT(mean(green, "albedo.G"), 2 * mean(green, "albedo.R"));
 }
 
 TEST(FibreView, AStoredTableHasNoFibres) {
     const SquareScene files(SquareScene::Worn::stored);
     Session session({files.scene()});
     for (const auto& [file, document] : session.documents())
-        EXPECT_EQ(document.table->swatch, nullptr);
+        EXPECT_TRUE(document.table->swatches.empty());
 }
 
 TEST(Session, RefusesASceneThatIsNone) {

@@ -15,13 +15,10 @@ std::shared_ptr<const kernel::FibreTracer> traced_fibres(const Cloth& cloth, uin
 /// The cloth's optics in the dyes of one colourway.
 std::vector<FibreOptics> dyed_optics(const Cloth& cloth, const kernel::FibreTracer& tracer,
                                      const std::string& colourway, uint64_t seed) {
-    ClothOptics optics = cloth_optics(cloth, tracer, {.seed = seed});
+    const ClothOptics optics = cloth_optics(cloth, tracer, {.seed = seed});
     if (colourway.empty())
         return optics.fibres;
-    const auto& dyes = rapport::colourway(optics.colourways, colourway, cloth.path.string());
-    for (size_t kind = 0; kind < optics.fibres.size(); ++kind)
-        optics.fibres[kind].absorption_per_um = dyes[kind];
-    return optics.fibres;
+    return optics.dyed(rapport::colourway(optics.colourways, colourway, cloth.path.string()));
 }
 
 } // namespace
