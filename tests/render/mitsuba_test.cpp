@@ -69,7 +69,7 @@ std::string flat_sheet(const std::filesystem::path& path) {
     std::string header = file.substr(0, file.find(end) + end.size());
     const char* vertex = file.data() + header.size();
     const size_t vertices = std::stoul(header.substr(header.find("vertex ") + 7));
-    for (const std::string& name : {"nx", "ny", "nz"}) {
+    for (const std::string name : {"nx", "ny", "nz"}) {
         const std::string line = "property float " + name + "\n";
         header.erase(header.find(line), line.size());
     }
