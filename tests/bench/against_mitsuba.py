@@ -4,6 +4,8 @@
   sheet     ../shared/bench/sheet.pbrt, 199,712 triangles under an even sky, diffuse
   cloth     the same in a measured cloth; Mitsuba has what `rapport export` makes of the table as its `measured`,
             which reflects only, where ours also transmits
+  synthetic the same, but Mitsuba has the smaller `measured` of ../shared/bench/tables.py, another material: only times
+            compare
   garment   the dress in that cloth, on its form, under a sky from a photograph; noise on the garment alone
 
 and prints for each the least seconds of rendering of some interleaved runs, the user CPU seconds beside them as a
@@ -11,7 +13,7 @@ check against a busy machine, the relative mean squared error that they leave (v
 0.01), the seconds to bring that to 1e-3, and the mean difference of the pictures in standard errors.
 
     pip install mitsuba numpy; apt install libllvm19
-    python3 tests/bench/against_mitsuba.py [build/tests/rapport [TABLE.bsdf [sheet|cloth|garment …]]]
+    python3 tests/bench/against_mitsuba.py [build/tests/rapport [TABLE.bsdf [sheet|cloth|synthetic|garment …]]]
 
 Without a table the quickstart satin is measured to accuracy 0.8 first. The error is measured in the same way for
 all, from pairs of pictures with different seeds; the program's picture is mirrored first, because pbrt's camera is
@@ -41,7 +43,7 @@ SHEET = SHARED / "bench" / "cloth200k.ply"
 SKY = SHARED / "data" / "env" / "pmndrs_sunset.exr"
 PROGRAM = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "build" / "tests" / "rapport")
 RUNS, SAMPLES = int(os.environ.get("RUNS", 4)), int(os.environ.get("SAMPLES", 64))
-SCENES = sys.argv[3:] or ["sheet", "cloth", "garment"]
+SCENES = sys.argv[3:] or ["sheet", "cloth", "synthetic", "garment"]
 for file in SHEET, SKY:
     if not file.exists():
         sys.exit(f"{file} is not here")
@@ -101,9 +103,10 @@ def pbrt_scene(name, folder, table):
     }.get(name, ("LookAt 1.6 -2.4 1.9  0 0 .15  0 0 1", '"rgb L" [1 1 1]', 5, 512))
     fov = 32 if name == "garment" else 40
     cloth = f'Material "cloth" "string filename" "{table}"\n'
+    sheet = f'Shape "plymesh" "string filename" "{SHEET}"\n'
     shapes = {
-        "sheet": f'Material "diffuse" "rgb reflectance" [.7 .7 .7]\nShape "plymesh" "string filename" "{SHEET}"\n',
-        "cloth": cloth + f'Shape "plymesh" "string filename" "{SHEET}"\n',
+        "sheet": 'Material "diffuse" "rgb reflectance" [.7 .7 .7]\n' + sheet, "cloth": cloth + sheet,
+        "synthetic": cloth + sheet,
         "garment": cloth + f'Shape "plymesh" "string filename" "{folder}/Body.ply"\n'
                    'Material "diffuse" "rgb reflectance" [.45 .45 .45]\n'
                    f'Shape "plymesh" "string filename" "{folder}/Form.ply"\n'}[name]
@@ -132,6 +135,7 @@ def mitsuba_scene(name, folder, measured):
 
     cloth = {"type": "measured", "filename": str(measured)}
     shapes = {"sheet": {"sheet": ply(SHEET, grey(0.7))}, "cloth": {"sheet": ply(SHEET, cloth)},
+              "synthetic": {"sheet": ply(SHEET, cloth)},
               "garment": {"body": ply(folder / "Body.ply", cloth), "form": ply(folder / "Form.ply", grey(0.45))}}
     # Ours: azimuth from +x falls from left to right, z up, turned with the model; Mitsuba's has y up.
     turned = mitsuba.ScalarTransform4f().rotate([1, 0, 0], -90) @ mitsuba.ScalarTransform4f(
@@ -228,4 +232,6 @@ with tempfile.TemporaryDirectory() as temporary:
         mitsuba.set_variant("scalar_rgb")
         write_garment(folder)
     for name in SCENES:
-        compare(name, folder, table, measured)
+        if name == "synthetic":
+            subprocess.run([sys.executable, SHARED / "bench" / "tables.py", folder / "synthetic.bsdf"], check=True)
+        compare(name, folder, table, folder / "synthetic.bsdf" if name == "synthetic" else measured)
