@@ -119,12 +119,8 @@ void edit(Session& session, const std::filesystem::path& file) {
     }
 }
 
-void run(const std::filesystem::path& cloth) {
-    const std::filesystem::path scenes = std::filesystem::path(RAPPORT_SOURCE_DIR) / "scenes";
+void without_window(const SceneSource& source, const std::filesystem::path& cloth) {
     const Clock::time_point start = Clock::now();
-    const std::filesystem::path file = std::filesystem::weakly_canonical(
-        cloth.empty() ? scenes / "cloths/quickstart.toml" : cloth);
-    const SceneSource source{scenes / "quickstart.pbrt", {{"Body", file}}};
     Session session(source);
     std::printf("scene and first table: %.2f s\n", since(start));
     session.resize(kSize);
@@ -138,8 +134,16 @@ void run(const std::filesystem::path& cloth) {
     std::printf("full resolution after %.1f s, %.2f Mrays/s\n", full,
                 1e-6 * session.picture()->rays_per_second);
     stop_tracing(session);
-    edit(session, file);
-    open_window(source);
+    edit(session, cloth);
+}
+
+void run(const std::filesystem::path& cloth) {
+    const std::filesystem::path scenes = std::filesystem::path(RAPPORT_SOURCE_DIR) / "scenes";
+    const std::filesystem::path file = std::filesystem::weakly_canonical(
+        cloth.empty() ? scenes / "cloths/quickstart.toml" : cloth);
+    const SceneSource source{scenes / "quickstart.pbrt", {{"Body", file}}};
+    without_window(source, file);
+    open_window(source); // when nothing else is at work any more
 }
 
 } // namespace
