@@ -49,16 +49,24 @@ Distribution1D::Distribution1D(std::span<const double> weights) : cdf_(weights.s
     for (size_t i = 1; i < cdf_.size(); ++i)
         cdf_[i] = total_ > 0 ? cdf_[i] / total_
                              : static_cast<double>(i) / static_cast<double>(weights.size());
+    uint32_t cell = 0;
+    for (size_t i = 0; i < weights.size(); ++i) {
+        while (cdf_[cell + 1] <= static_cast<double>(i) / static_cast<double>(weights.size()))
+            ++cell;
+        first_cell_.push_back(cell);
+    }
 }
 
 Distribution1D::Sample Distribution1D::sample(double u) const {
     u = std::clamp(u, 0.0, kBelowOne);
+    const double count = static_cast<double>(first_cell_.size());
     // The last edge at or below u: its cell is not empty, for the next edge lies above u.
-    const size_t cell = std::ranges::upper_bound(cdf_, u) - cdf_.begin() - 1;
+    size_t cell = first_cell_[static_cast<size_t>(u * count)];
+    while (cdf_[cell + 1] <= u)
+        ++cell;
     const double probability = cdf_[cell + 1] - cdf_[cell];
-    const double count = static_cast<double>(cdf_.size() - 1);
     const double x = (static_cast<double>(cell) + (u - cdf_[cell]) / probability) / count;
-    const double end = std::nextafter(static_cast<double>(cell + 1) / count, 0.0);
+    const double end = static_cast<double>(cell + 1) / count * (1 - 0x1p-52); // below the edge
     return {std::min(x, end), probability * count};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -24,6 +25,8 @@ class Distribution1D {
 
   private:
     std::vector<double> cdf_; ///< at the cells' edges, from 0 to exactly 1
+    /// The cell that each of as many equal steps of `u` begins in, so that none is far to seek.
+    std::vector<uint32_t> first_cell_;
     double total_ = 0;
 };
 

@@ -143,11 +143,9 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
 Rgb escaped_radiance(const Scene& scene, const glm::vec3& direction, const Scattering& last) {
     Rgb radiance(0);
     for (const auto& [light, probability] : scene.distant_lights()) {
-        const Rgb escaped = light->escaped(direction);
-        if (escaped == Rgb(0))
-            continue;
-        radiance +=
-            escaped * balance(last.pdf, kCandidates * probability * light->escaped_pdf(direction));
+        const auto [escaped, pdf] = light->escaped(direction);
+        if (escaped != Rgb(0))
+            radiance += escaped * balance(last.pdf, kCandidates * probability * pdf);
     }
     return radiance;
 }

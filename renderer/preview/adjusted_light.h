@@ -20,11 +20,9 @@ class AdjustedLight final : public Light {
         }
         return sample;
     }
-    Rgb escaped(const glm::vec3& direction) const override {
-        return scale_ * light_->escaped(inverse_ * direction);
-    }
-    float escaped_pdf(const glm::vec3& direction) const override {
-        return light_->escaped_pdf(inverse_ * direction);
+    EscapedLight escaped(const glm::vec3& direction) const override {
+        const auto [radiance, pdf] = light_->escaped(inverse_ * direction);
+        return {scale_ * radiance, pdf};
     }
     bool is_delta() const override { return light_->is_delta(); }
     bool has_place() const override { return light_->has_place(); }

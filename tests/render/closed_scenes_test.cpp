@@ -144,7 +144,7 @@ Rgb simple_radiance(const Scene& scene, kernel::Ray ray, CounterRng& rng, bool c
         const auto point = scene.intersect(ray);
         if (!point) {
             for (const auto& choice : scene.distant_lights())
-                radiance += share * throughput * choice.light->escaped(ray.dir);
+                radiance += share * throughput * choice.light->escaped(ray.dir).radiance;
             return radiance;
         }
         if (const AreaLight* light = point->surface->area_light.get())

@@ -212,7 +212,7 @@ TEST(HotPixel, IsSampledByItsLight) {
     for (int j = 0; j < kSteps; ++j)
         for (int i = 0; i < 2 * kSteps; ++i) {
             const double theta = kPi / 2 * (j + 0.5) / kSteps, phi = kPi * (i + 0.5) / kSteps;
-            irradiance += sky->escaped(glm::vec3(spherical_direction(theta, phi))).g *
+            irradiance += sky->escaped(glm::vec3(spherical_direction(theta, phi))).radiance.g *
                           std::cos(theta) * std::sin(theta) * square(kPi) /
                           (2 * square(double{kSteps}));
         }

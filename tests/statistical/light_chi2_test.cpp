@@ -95,7 +95,7 @@ std::shared_ptr<Light> image_light(const std::filesystem::path& path, const glm:
 
 LightCase infinite_case(const std::string& name, const std::shared_ptr<Light>& light) {
     light->prepare(glm::vec3(0), 1);
-    return {name, light, [light](const glm::vec3& w) { return light->escaped_pdf(w); }};
+    return {name, light, [light](const glm::vec3& w) { return light->escaped(w).pdf; }};
 }
 
 LightCase area_case() {
@@ -139,7 +139,7 @@ TEST(LightChiSquare, TheSunComesFromOneDirection) {
     EXPECT_TRUE(sample->delta);
     EXPECT_EQ(sample->radiance, Rgb(2));
     EXPECT_LT(glm::length(sample->direction - glm::vec3(0, 0.6f, 0.8f)), 1e-6f);
-    EXPECT_EQ(light->escaped(sample->direction), Rgb(0));
+    EXPECT_EQ(light->escaped(sample->direction).radiance, Rgb(0));
 }
 
 /// Where things stand in an image light: one bright pixel, looked up.
@@ -153,7 +153,7 @@ TEST(ImageLight, IsOrientedAsItsHeaderSays) {
         return image_light(folder / "spot.exr", glm::mat4(1));
     };
     const auto seen = [](const std::shared_ptr<Light>& light, const glm::vec3& w) {
-        return light->escaped(glm::normalize(w)).g > 0.2f;
+        return light->escaped(glm::normalize(w)).radiance.g > 0.2f;
     };
     // Latitude–longitude, 16 × 8: the zenith above; +x in the middle; −y to its right.
     EXPECT_TRUE(seen(bright(16, 8, 3, 0), spherical_direction(0.196f, 1.96f)));

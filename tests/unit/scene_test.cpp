@@ -154,7 +154,7 @@ TEST(SceneLights, AConstantSkyIsLeftToScattering) {
     EXPECT_FALSE(scene.choose_light(0.5f));
     ASSERT_EQ(scene.distant_lights().size(), 1u);
     EXPECT_EQ(scene.distant_lights()[0].probability, 0);
-    EXPECT_EQ(scene.distant_lights()[0].light->escaped({0, 0, 1}), Rgb(2));
+    EXPECT_EQ(scene.distant_lights()[0].light->escaped({0, 0, 1}).radiance, Rgb(2));
 }
 
 TEST(Registries, HoldWhatIsShipped) {
@@ -200,7 +200,7 @@ TEST_F(SceneBuilder, BuildsTrianglesLightsAndEmission) {
     EXPECT_EQ(surface.emission, Rgb(4));
     EXPECT_EQ(surface.material->albedo({0, 0, 1}), Rgb(.2f, .4f, .6f));
     ASSERT_EQ(scene.distant_lights().size(), 1u);
-    EXPECT_EQ(scene.distant_lights()[0].light->escaped({0, 0, 1}), Rgb(2, 4, 6));
+    EXPECT_EQ(scene.distant_lights()[0].light->escaped({0, 0, 1}).radiance, Rgb(2, 4, 6));
     // Reflected, its face is −z; reversed, +z again.
     const auto point = scene.intersect({{.2f, .2f, 1}, {0, 0, -1}});
     ASSERT_TRUE(point);

@@ -218,7 +218,8 @@ TEST(ImageLight, IsBlackWhereItsFileIsNegativeAndSaysSo) {
     EXPECT_NE(warnings[0].find("in 2 of 32 pixels"), std::string::npos) << warnings[0];
     for (const float z : {1.0f, 0.5f, 0.0f, -1.0f})
         EXPECT_TRUE(glm::all(glm::greaterThanEqual(
-            scene.lights()[0]->escaped(glm::normalize(glm::vec3(0.3f, 0.4f, z))), Rgb(0))));
+            scene.lights()[0]->escaped(glm::normalize(glm::vec3(0.3f, 0.4f, z))).radiance,
+            Rgb(0))));
     image.data[0][5] = std::numeric_limits<float>::quiet_NaN();
     write_exr(image, folder / "sky.exr");
     EXPECT_THROW(build_scene(parse_pbrt(folder / "scene.pbrt"), {}, warnings), FileError);

@@ -28,7 +28,7 @@ TEST(Wardrobe, TurnsWhatIsFarAndDimsEachKindAlone) {
     settings.sun_rotation = 90;
     settings.lamps = 0.25f;
     const Scene turned = dressed(scene, {}, settings, {0, 0, 1}, {});
-    EXPECT_EQ(turned.lights()[0]->escaped({0, 0, 1}), Rgb(2));
+    EXPECT_EQ(turned.lights()[0]->escaped({0, 0, 1}).radiance, Rgb(2));
     const LightSample sun = *turned.lights()[1]->sample({0, 0, 0}, {0.5f, 0.5f});
     EXPECT_NEAR(glm::distance(sun.direction, glm::vec3(0, 1, 0)), 0, 1e-6f);
     EXPECT_NEAR(sun.radiance.g, 1.5f, 1e-6f);

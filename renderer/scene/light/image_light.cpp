@@ -91,7 +91,7 @@ void ImageLight::prepare_sampling() {
         for (int x = 0; x < width_; ++x) {
             const size_t i = static_cast<size_t>(y) * width_ + x;
             luminances[i] = mean_luminance(x, y);
-            solid_angles[i] = solid_angle({(x + 0.5) / width_, (y + 0.5) / height_});
+            solid_angles[i] = solid_angle(from_image({(x + 0.5) / width_, (y + 0.5) / height_}));
             flux += luminances[i] * solid_angles[i];
             sphere += solid_angles[i];
         }
@@ -106,22 +106,20 @@ void ImageLight::prepare(const glm::vec3&, float scene_radius) { scene_radius_ =
 
 std::optional<LightSample> ImageLight::sample(const glm::vec3&, const glm::vec2& u) const {
     const auto sample = distribution_->sample(u);
-    const double jacobian = solid_angle(sample.position);
+    const glm::vec3 direction = from_image(sample.position);
+    const float jacobian = solid_angle(direction);
     if (!(jacobian > 0))
-        return std::nullopt; // a pole of the latitude–longitude map
-    return LightSample{to_world_ * from_image(sample.position),
-                       std::numeric_limits<float>::infinity(), lookup(sample.position),
-                       static_cast<float>(sample.pdf / jacobian), false};
+        return std::nullopt;
+    return LightSample{to_world_ * direction, std::numeric_limits<float>::infinity(),
+                       lookup(sample.position), static_cast<float>(sample.pdf / jacobian), false};
 }
 
-Rgb ImageLight::escaped(const glm::vec3& direction) const {
-    return lookup(to_image(from_world_ * direction));
-}
-
-float ImageLight::escaped_pdf(const glm::vec3& direction) const {
-    const glm::dvec2 position = to_image(from_world_ * direction);
-    const double jacobian = solid_angle(position);
-    return jacobian > 0 ? static_cast<float>(distribution_->pdf(position) / jacobian) : 0;
+EscapedLight ImageLight::escaped(const glm::vec3& direction) const {
+    const glm::vec3 own = from_world_ * direction;
+    const glm::dvec2 position = to_image(own);
+    const float jacobian = solid_angle(own);
+    return {lookup(position),
+            jacobian > 0 ? static_cast<float>(distribution_->pdf(position) / jacobian) : 0};
 }
 
 float ImageLight::power() const {
@@ -140,13 +138,17 @@ glm::dvec2 ImageLight::to_image(const glm::vec3& direction) const {
 }
 
 glm::vec3 ImageLight::from_image(const glm::dvec2& position) const {
-    return glm::vec3(octahedral_
-                         ? octahedral_to_sphere(position)
-                         : spherical_direction(kPi * position.y, 2 * kPi * (0.5 - position.x)));
+    if (octahedral_)
+        return glm::vec3(octahedral_to_sphere(position));
+    const double theta = kPi * position.y; // in float it would be beyond π, at the lower pole
+    const auto phi = static_cast<float>(2 * kPi * (0.5 - position.x));
+    const auto sine = static_cast<float>(std::sin(theta));
+    return {sine * std::cos(phi), sine * std::sin(phi), static_cast<float>(std::cos(theta))};
 }
 
-double ImageLight::solid_angle(const glm::dvec2& position) const {
-    return octahedral_ ? 4 * kPi : 2 * kPi * kPi * std::sin(kPi * position.y);
+float ImageLight::solid_angle(const glm::vec3& direction) const {
+    return static_cast<float>(octahedral_ ? 4 * kPi
+                                          : 2 * kPi * kPi * glm::length(glm::vec2(direction)));
 }
 
 Rgb ImageLight::pixel(int x, int y) const {
@@ -160,7 +162,7 @@ Rgb ImageLight::pixel(int x, int y) const {
             x = width_ - 1 - x;
         }
     } else {
-        x = (x + width_) % width_;
+        x += x < 0 ? width_ : x >= width_ ? -width_ : 0;
         y = std::clamp(y, 0, height_ - 1);
     }
     return pixels_[static_cast<size_t>(y) * width_ + x];
@@ -171,6 +173,11 @@ Rgb ImageLight::lookup(const glm::dvec2& position) const {
     const glm::dvec2 floor = glm::floor(place);
     const glm::vec2 f(place - floor);
     const int x = static_cast<int>(floor.x), y = static_cast<int>(floor.y);
+    if (x >= 0 && x + 1 < width_ && y >= 0 && y + 1 < height_) { // hardly ever else
+        const Rgb* const upper = &pixels_[static_cast<size_t>(y) * width_ + x];
+        const Rgb* const lower = upper + width_;
+        return glm::mix(glm::mix(upper[0], upper[1], f.x), glm::mix(lower[0], lower[1], f.x), f.y);
+    }
     return glm::mix(glm::mix(pixel(x, y), pixel(x + 1, y), f.x),
                     glm::mix(pixel(x, y + 1), pixel(x + 1, y + 1), f.x), f.y);
 }

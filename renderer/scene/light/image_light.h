@@ -21,16 +21,16 @@ class ImageLight final : public Light {
 
     void prepare(const glm::vec3& scene_centre, float scene_radius) override;
     std::optional<LightSample> sample(const glm::vec3& from, const glm::vec2& u) const override;
-    Rgb escaped(const glm::vec3& direction) const override;
-    float escaped_pdf(const glm::vec3& direction) const override;
+    EscapedLight escaped(const glm::vec3& direction) const override;
     float power() const override; ///< of what is above the mean, for which it is sampled
 
   private:
     // The map between directions in the light's own space and the image, [0, 1]² from its top left.
     glm::dvec2 to_image(const glm::vec3& direction) const;
     glm::vec3 from_image(const glm::dvec2& position) const;
-    /// Solid angle per unit area of the image [sr].
-    double solid_angle(const glm::dvec2& position) const;
+    /// Solid angle per unit area of the image where that shows a unit direction [sr]; 0 at a pole
+    /// of the latitude–longitude map.
+    float solid_angle(const glm::vec3& direction) const;
 
     void read_pixels(const LightContext& context, const std::filesystem::path& file);
     double mean_luminance(int x, int y) const;

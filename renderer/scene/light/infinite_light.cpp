@@ -13,7 +13,7 @@ class ConstantLight final : public Light {
     std::optional<LightSample> sample(const glm::vec3&, const glm::vec2&) const override {
         return std::nullopt;
     }
-    Rgb escaped(const glm::vec3&) const override { return radiance_; }
+    EscapedLight escaped(const glm::vec3&) const override { return {radiance_, 0}; }
     float power() const override { return 0; }
 
   private:

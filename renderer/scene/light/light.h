@@ -22,6 +22,11 @@ struct LightSample {
     bool delta;          ///< the direction has no density (distant light): no MIS
 };
 
+struct EscapedLight {
+    Rgb radiance;
+    float pdf; ///< [1/sr] with which `Light::sample` picks the direction
+};
+
 /// Something that shines. Constant after `prepare`.
 class Light {
   public:
@@ -31,15 +36,10 @@ class Light {
         (void)scene_centre, (void)scene_radius;
     }
     virtual std::optional<LightSample> sample(const glm::vec3& from, const glm::vec2& u) const = 0;
-    /// Radiance of a ray that leaves the scene in unit `direction`, and the density with which
-    /// `sample` picks it; zero for lights with a place.
-    virtual Rgb escaped(const glm::vec3& direction) const {
+    /// Of a ray that leaves the scene in unit `direction`; nothing for lights with a place.
+    virtual EscapedLight escaped(const glm::vec3& direction) const {
         (void)direction;
-        return Rgb(0);
-    }
-    virtual float escaped_pdf(const glm::vec3& direction) const {
-        (void)direction;
-        return 0;
+        return {Rgb(0), 0};
     }
     /// Emitted power, up to a common factor, by which lights are chosen to be sampled; 0 for one
     /// that is left to rays that happen to meet it.
