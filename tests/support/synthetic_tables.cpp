@@ -93,4 +93,16 @@ double satin_intensity(const IncidentDirection& from, const glm::dvec3& out, siz
     return (kDiffuse[band] / kPi * std::abs(out.z) + 0.6 * highlight) * (0.4 + 0.6 * cosine);
 }
 
+double slanted_intensity(const IncidentDirection& from, const glm::dvec3& out, size_t band) {
+    const bool front = from.side == Side::front, reflected = (out.z > 0) == front;
+    constexpr double kDiffuse[] = {0.3, 0.15, 0.08};
+    const double angle = radians(30.0 + (front ? 0 : 60) + (reflected ? 0 : 90));
+    const glm::dvec3 sum = spherical_direction(from.theta, from.phi) + out;
+    const double across = std::cos(angle) * sum.x + std::sin(angle) * sum.y;
+    const double along = std::cos(angle) * sum.y - std::sin(angle) * sum.x;
+    return (reflected ? 0.6 : 0.4) *
+           (kDiffuse[band] / kPi * std::abs(out.z) +
+            0.3 * std::exp(-square(across / 0.9) - square(along / 0.5)) * std::abs(out.z));
+}
+
 } // namespace rapport::tests

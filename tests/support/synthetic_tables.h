@@ -24,5 +24,7 @@ BsdfTable small_synthetic_table(const Intensity& intensity, double unscattered =
 /// warp, white), a coloured diffuse part, and forward transmission. Back and front differ. Not
 /// reciprocal: it darkens with the cosine of incidence only.
 double satin_intensity(const IncidentDirection& from, const glm::dvec3& out, size_t band);
+/// Streaks of different slant in the four blocks, without mirror symmetry.
+double slanted_intensity(const IncidentDirection& from, const glm::dvec3& out, size_t band);
 
 } // namespace rapport::tests

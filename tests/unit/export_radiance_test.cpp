@@ -20,21 +20,8 @@ using tests::RadianceTree;
 
 constexpr double kUnscattered = 0.07;
 
-/// Streaks of different slant in the four blocks, without mirror symmetry.
-double slanted(const IncidentDirection& from, const glm::dvec3& out, size_t band) {
-    const bool front = from.side == Side::front, reflected = (out.z > 0) == front;
-    constexpr double kDiffuse[] = {0.3, 0.15, 0.08};
-    const double angle = radians(30.0 + (front ? 0 : 60) + (reflected ? 0 : 90));
-    const glm::dvec3 sum = spherical_direction(from.theta, from.phi) + out;
-    const double across = std::cos(angle) * sum.x + std::sin(angle) * sum.y;
-    const double along = std::cos(angle) * sum.y - std::sin(angle) * sum.x;
-    return (reflected ? 0.6 : 0.4) *
-           (kDiffuse[band] / kPi * std::abs(out.z) +
-            0.3 * std::exp(-square(across / 0.9) - square(along / 0.5)) * std::abs(out.z));
-}
-
 struct Exported {
-    BsdfTable table = tests::synthetic_table(slanted, kUnscattered);
+    BsdfTable table = tests::synthetic_table(tests::slanted_intensity, kUnscattered);
     TableBsdf bsdf{table, ""};
     RadianceLosses losses;
     std::atomic<double> progress = 0; ///< the last that was told
