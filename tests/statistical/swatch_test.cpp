@@ -81,12 +81,13 @@ TEST(Swatch, RenderedWithItsTableEqualsTheFibresThemselves) {
             tests::surface(tests::level_square(5e-4f, 0), tests::cloth_of(table)), eye, light,
             1e-4f, 4096, 1);
         // The table's own noise in the disc is that of as many paths as the reference has; on top
-        // of the noise, 3 % for what the bins of the mesh do to a disc of 10°.
+        // of the noise, 6 % for what bins 11° wide do to a disc of 10°: beside the beam that goes
+        // straight on, 5.1 %, and 1.0 ± 0.5 % in a mesh four times as fine each way.
         const double sigma = std::sqrt(2 * fibre.variance + picture.variance);
-        const double tolerance = 3.5 * sigma + 0.03 * fibre.mean;
+        const double tolerance = 3.5 * sigma + 0.06 * fibre.mean;
         EXPECT_NEAR(picture.mean, fibre.mean, tolerance)
             << "light at " << pair.light_theta << ", " << pair.light_phi;
-        EXPECT_LT(tolerance, (tests::long_run() ? 0.09 : 0.3) * fibre.mean);
+        EXPECT_LT(tolerance, (tests::long_run() ? 0.12 : 0.33) * fibre.mean);
 
         // The wrong twin puts the light into the table's incidence slot: off by the ratio of the
         // cosines, which the unequal angles bring out.
