@@ -62,11 +62,14 @@ Distribution1D::Sample Distribution1D::sample(double u) const {
     const double count = static_cast<double>(first_cell_.size());
     // The last edge at or below u: its cell is not empty, for the next edge lies above u.
     size_t cell = first_cell_[static_cast<size_t>(u * count)];
+    while (cdf_[cell] > u) // the product was rounded up
+        --cell;
     while (cdf_[cell + 1] <= u)
         ++cell;
     const double probability = cdf_[cell + 1] - cdf_[cell];
     const double x = (static_cast<double>(cell) + (u - cdf_[cell]) / probability) / count;
-    const double end = static_cast<double>(cell + 1) / count * (1 - 0x1p-52); // below the edge
+    // So far below the edge that `cell_at` cannot round it up.
+    const double end = static_cast<double>(cell + 1) / count * (1 - 0x1p-50);
     return {std::min(x, end), probability * count};
 }
 

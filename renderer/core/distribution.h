@@ -25,7 +25,8 @@ class Distribution1D {
 
   private:
     std::vector<double> cdf_; ///< at the cells' edges, from 0 to exactly 1
-    /// The cell that each of as many equal steps of `u` begins in, so that none is far to seek.
+    /// The cell that each of as many equal steps of `u` begins in: the right one is a step further
+    /// in the mean.
     std::vector<uint32_t> first_cell_;
     double total_ = 0;
 };

@@ -5,8 +5,9 @@
 namespace rapport {
 namespace {
 
+constexpr uint64_t kGolden = 0x9E3779B97F4A7C15u; ///< 2^64 over the golden ratio
+
 /// A bijection of 64 bits that leaves no visible pattern (Steele et al. 2014, SplitMix64).
-constexpr uint64_t kGolden = 0x9E3779B97F4A7C15u;
 uint64_t mix(uint64_t x) {
     x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
     x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;

@@ -370,6 +370,27 @@ BsdfTable glowing(const std::function<glm::ivec3(const IncidentDirection&, bool 
     });
 }
 
+/// The colours of the disc's middle, as they are when the hand gets there.
+class DiscColours {
+  public:
+    const WindowHand::Place place{"cloth", {"map"}};
+    std::vector<glm::ivec3> seen;
+
+    explicit DiscColours(WindowHand& hand) : hand_(hand) {
+        hand_.point(place);
+        hand_.then([this] { middle_ = hand_.mouse(); });
+        note();
+    }
+    void note() {
+        hand_.then([] {});
+        hand_.then([this] { seen.push_back(pixel(middle_)); });
+    }
+
+  private:
+    WindowHand& hand_;
+    glm::vec2 middle_{0};
+};
+
 TEST_F(ViewWindow, TheDiscIsOfTheSidesThatAreChosenAndOfTheLightThatIsDragged) {
     const SquareScene files(SquareScene::Worn::stored);
     write_table(glowing([](const IncidentDirection& from, bool to_face) {
@@ -381,33 +402,24 @@ TEST_F(ViewWindow, TheDiscIsOfTheSidesThatAreChosenAndOfTheLightThatIsDragged) {
                 }),
                 files.table());
     Session session({files.scene()});
-    const WindowHand::Place disc{"cloth", {"map"}};
-    glm::vec2 middle;
-    std::vector<glm::ivec3> colours;
     WindowHand hand;
-    const auto note = [&] {
-        hand.then([] {});
-        hand.then([&] { colours.push_back(pixel(middle)); });
-    };
+    DiscColours disc(hand);
     const auto click = [&](const char* what, const char* side) {
         hand.point({"cloth", {what, side}});
         hand.click();
-        note();
+        disc.note();
     };
-    hand.point(disc);
-    hand.then([&] { middle = hand.mouse(); });
-    note();
     click("seen", "back");
     click("lit", "back");
     click("seen", "face");
-    hand.point(disc, {0.3f, 0.5f});
+    hand.point(disc.place, {0.3f, 0.5f});
     hand.press();
     hand.move({60, 0});
     hand.move({20, 0});
     hand.release();
-    note();
+    disc.note();
     hand.use(session);
-    EXPECT_EQ(colours, (std::vector{kRed, kGreen, kBlue, kYellow, kWhite}));
+    EXPECT_EQ(disc.seen, (std::vector{kRed, kGreen, kBlue, kYellow, kWhite}));
 }
 
 TEST_F(ViewWindow, TheDiscIsOfTheColourwayThatIsChosenOrWorn) {
@@ -417,24 +429,16 @@ TEST_F(ViewWindow, TheDiscIsOfTheColourwayThatIsChosenOrWorn) {
     table.colourways["green"] = glowing([](const auto&, bool) { return kGreen; });
     write_table(table, files.table());
     Session session({files.scene()});
-    glm::vec2 middle;
-    std::vector<glm::ivec3> colours;
     WindowHand hand;
-    const auto note = [&] {
-        hand.then([] {});
-        hand.then([&] { colours.push_back(pixel(middle)); });
-    };
-    hand.point({"cloth", {"map"}});
-    hand.then([&] { middle = hand.mouse(); });
-    note();
+    DiscColours disc(hand);
     pick(hand, {"cloth", {"colourway"}}, "blue");
-    note();
+    disc.note();
     hand.then([&] { EXPECT_EQ(session.choices().at("Body").colourway, ""); }); // looked at only
     pick(hand, {"scene", {"Body", "colourway"}}, "green");
     hand.wait_until([&] { return session.choices().at("Body").colourway == "green"; });
-    note();
+    disc.note();
     hand.use(session);
-    EXPECT_EQ(colours, (std::vector{kRed, kBlue, kGreen}));
+    EXPECT_EQ(disc.seen, (std::vector{kRed, kBlue, kGreen}));
 }
 
 TEST_F(ViewWindow, TextFollowsTheScale) {

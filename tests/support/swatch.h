@@ -30,6 +30,13 @@ struct EyeAndLight {
     }
 };
 
+/// An empty table in another mesh of exits.
+inline BsdfTable in_mesh(BsdfTable table, const DirectionMesh& mesh) {
+    table.exits = mesh;
+    table.intensity.assign(table.directions() * 2 * mesh.bins() * table.bands.count(), 0);
+    return table;
+}
+
 /// `table` with the directions that `fine`, a partial table, has too replaced by its.
 inline void put_in(const BsdfTable& fine, BsdfTable& table) {
     const size_t stride = table.intensity.size() / table.directions();

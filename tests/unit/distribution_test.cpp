@@ -3,6 +3,7 @@
 #include "renderer/core/rng.h"
 #include "tests/support/statistics.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <vector>
@@ -38,6 +39,35 @@ TEST(Distribution1D, SamplesInvertTheCdfAndAvoidEmptyCells) {
     }
     EXPECT_NEAR(distribution.sample(0).x, 1.0 / 8, 1e-15);
     EXPECT_NEAR(distribution.sample(3 / 8.5 + 0.5 / 8.5).x, 2.5 / 8, 1e-14);
+}
+
+// Where the number lies at an edge of the cells, or as near as it can.
+TEST(Distribution1D, NoRoundingLeadsIntoAnEmptyCell) {
+    const auto check = [](const std::vector<double>& weights) {
+        const Distribution1D distribution(weights);
+        const auto count = static_cast<double>(weights.size());
+        for (double i = 1; i < count; ++i)
+            for (const double u :
+                 {std::nextafter(i / count, 0.0), i / count, std::nextafter(i / count, 1.0)}) {
+                const Distribution1D::Sample sample = distribution.sample(u);
+                EXPECT_GT(sample.pdf, 0);
+                EXPECT_EQ(sample.pdf, distribution.pdf(sample.x)) << u << " of " << count;
+            }
+    };
+    for (const int count : {3, 49, 107, 1000, 4095}) {
+        std::vector<double> weights(count);
+        for (int i = 0; i < count; ++i)
+            weights[i] = i % 2;
+        check(weights);
+    }
+    constexpr int kCount = 1000;
+    for (int i = 1; i < kCount; ++i) { // a thin cell from such an edge on, beside an empty one
+        std::vector<double> thin(kCount);
+        thin[0] = i;
+        thin[2] = 1e-9;
+        thin[3] = kCount - i - thin[2];
+        check(thin);
+    }
 }
 
 TEST(Distribution1D, WithoutWeightItIsUniform) {
