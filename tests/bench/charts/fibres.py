@@ -24,6 +24,9 @@ for run in json.load(sys.stdin)["benchmarks"]:
 figure, axes = plt.subplots(figsize=(4.5, 3.2), layout="constrained")
 for name, points in series.items():
     axes.loglog(*zip(*sorted(points)), "o-", label={"fibres": "explicit fibres"}.get(name, name))
+angles = [angle for angle, _ in sorted(points)]
+axes.set_xticks(angles, angles)
+axes.set_xticks([], minor=True)
 axes.set_title("A satin seen from afar: time to equal error")
 axes.set_xlabel("half-angle of the lamp [°]")
 axes.set_ylabel("time to a standard error of 1 % [s]")
