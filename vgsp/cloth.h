@@ -161,7 +161,8 @@ struct Cloth {
     Draft draft;
     double ends_per_cm = 0;  ///< warp sett
     double picks_per_cm = 0; ///< weft sett
-    /// Warp's share of the crimp: h_warp / (h_warp + h_weft), [0, 1].
+    /// Warp's share of the crimp, as Peirce's heights would be: h_warp / (h_warp + h_weft), [0, 1].
+    /// So much stiffer are picks than ends, of both together (crossing_heights.h).
     double crimp_balance = 0.5;
     YarnSpec warp, weft; ///< of all threads, unless the draft has the yarns of each
     std::vector<NamedYarn> yarns;

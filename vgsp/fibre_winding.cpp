@@ -9,6 +9,7 @@ namespace {
 
 using glm::dvec3;
 
+constexpr double kNoCrimp = 1e-6;   ///< half a yarn's rise and fall over its half height
 constexpr int kMostRefinement = 64; ///< beyond which a curve cannot be smooth
 
 double angle_between(const dvec3& a, const dvec3& b) {
@@ -72,11 +73,12 @@ dvec3 PlacedYarn::fibre_point(const FibreSite& fibre, double s) const {
 
 glm::dvec2 PlacedYarn::stray(const StrayLoop& loop, const glm::dvec2& p, double s,
                              double height) const {
-    const double distance = length(p);
-    const double facing_out = height * p.y / (crest * distance);
-    if (crest == 0 || !(facing_out > 0))
-        return glm::dvec2(0);
+    const double middle = 0.5 * (axis->highest() + axis->lowest());
+    const double crest = axis->highest() - middle, distance = length(p);
     const glm::dvec2 size(section->outline.half_width, section->outline.half_height);
+    const double facing_out = (height - middle) * p.y / (crest * distance);
+    if (!(crest > kNoCrimp * size.y && facing_out > 0))
+        return glm::dvec2(0);
     const double outside = glm::smoothstep(0.5, 0.9, length(p / size));
     return loop.height_at(s) * outside * facing_out * facing_out / distance * p;
 }

@@ -12,9 +12,8 @@ namespace rapport {
 struct PlacedYarn {
     const YarnAxis* axis;
     const SectionLayout* section;
-    glm::dvec3 origin;       ///< of the axis' coordinate `along`, at half height
+    glm::dvec3 origin;       ///< of the axis' coordinates
     glm::dvec3 direction;    ///< unit, in the plane of the cloth
-    double crest;            ///< the axis' greatest height [µm]
     double twist, ply_twist; ///< [rad/µm of axis], Z positive
     MigrationField migration;
 

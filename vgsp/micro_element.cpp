@@ -89,7 +89,6 @@ WoundYarn wind_yarn(const YarnSystem& system, const glm::dvec3& direction, size_
                           &section,
                           across * glm::dvec3(direction.y, direction.x, 0),
                           direction,
-                          kind.crimp / 2,
                           2 * kPi * packing_steps / (section.symmetry * cell_length),
                           2 * kPi * ply_steps / (section.plies * cell_length),
                           migration_of(kind, cell_length, random(Purpose::fibre_jitter, 0))};

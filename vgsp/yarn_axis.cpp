@@ -8,90 +8,133 @@ namespace rapport {
 namespace {
 
 constexpr double kRounding = 1e-9; ///< relative; what a spacing that just suffices may lack
+constexpr double kNoTurn = 1e-9;   ///< [rad]
 
-std::vector<YarnAxis::Crossing> crossings_of(std::span<const uint8_t> above, const WrapCurve& wrap,
-                                             double crossed_crimp) {
-    std::vector<YarnAxis::Crossing> crossings;
-    for (const uint8_t over : above)
-        crossings.push_back({over != 0, &wrap, crossed_crimp});
-    return crossings;
+double side_of(const YarnAxis::Crossing& crossing) { return crossing.above ? 1 : -1; }
+
+double line_slope(const YarnAxis::Crossing& from, const YarnAxis::Crossing& to, double spacing) {
+    const WrapPassage passage({&from.wrap->curve(), from.above}, {&to.wrap->curve(), to.above},
+                              to.centre - from.centre);
+    if (!(spacing >= passage.smallest_spacing() * (1 - kRounding)))
+        throw std::invalid_argument("the crossed yarns are too close for a yarn to pass between");
+    return passage.slope(spacing);
 }
 
 } // namespace
 
-YarnAxis::YarnAxis(std::span<const uint8_t> above, double spacing, const WrapCurve& wrap,
-                   double own_crimp, double crossed_crimp)
-    : YarnAxis(crossings_of(above, wrap, crossed_crimp), spacing, own_crimp) {}
+/// Those that stay of all crossings, when one by one those go whose section lies clear of the line
+/// between its neighbours.
+std::vector<YarnAxis::Touched> YarnAxis::touched(std::span<const Crossing> crossings,
+                                                 double spacing) {
+    const size_t count = crossings.size();
+    std::vector<size_t> next(count), previous(count);
+    std::vector<double> leaving(count);
+    const auto join = [&](size_t from, size_t to) {
+        next[from] = to;
+        previous[to] = from;
+        const size_t intervals = (to + count - from - 1) % count + 1;
+        leaving[from] = line_slope(crossings[from], crossings[to], intervals * spacing);
+    };
+    for (size_t k = 0; k < count; ++k)
+        join(k, (k + 1) % count);
 
-YarnAxis::YarnAxis(std::span<const Crossing> crossings, double spacing, double own_crimp)
-    : period_(spacing * crossings.size()) {
-    struct Solved {
-        const WrapCurve *from, *to;
-        double rise, angle;
-    };
-    std::vector<Solved> solved; // few: passages repeat
-    const auto contact_angle = [&](const Crossing& here, const Crossing& next) {
-        const double rise = 0.5 * (here.crimp + next.crimp);
-        for (const Solved& s : solved)
-            if (s.from == here.wrap && s.to == next.wrap && s.rise == rise)
-                return s.angle;
-        const WrapPassage passage(*here.wrap, *next.wrap, rise);
-        if (!(spacing >= passage.smallest_spacing() * (1 - kRounding)))
-            throw std::invalid_argument(
-                "the crossed yarns are too close for a yarn to pass between");
-        solved.push_back({here.wrap, next.wrap, rise, passage.tangent_angle(spacing)});
-        return solved.back().angle;
-    };
-    double interval_start = 0;
-    for (size_t k = 0; k < crossings.size(); ++k) {
-        interval_start = length_;
-        const Crossing &here = crossings[k], &next = crossings[(k + 1) % crossings.size()];
-        const double side = here.above ? 1 : -1;
-        const glm::dvec2 crest((k + 0.5) * spacing, side * own_crimp / 2);
-        if (here.above == next.above) {
-            append(Kind::straight, spacing, crest, 0, 0);
+    size_t remaining = count, k = 0;
+    for (size_t settled = 0; settled < remaining;) {
+        const double turn =
+            side_of(crossings[k]) * (leaving[previous[k]] - leaving[k]); // towards the section
+        if (turn >= -kNoTurn || remaining == 1) {
+            ++settled;
+            k = next[k];
             continue;
         }
-        const double angle = contact_angle(here, next);
-        const size_t leaving = arc_to(*here.wrap, angle), landing = arc_to(*next.wrap, angle);
-        const glm::dvec2 centre(crest.x, -side * here.crimp / 2);
-        const glm::dvec2 next_centre(crest.x + spacing, side * next.crimp / 2);
-        const auto contact = [&](size_t arc) {
-            return arcs_[arc].curve.point(arcs_[arc].arc.angle(arcs_[arc].arc.length()));
-        };
-        const glm::dvec2 leaves = centre + contact(leaving) * glm::dvec2(1, side);
-        const glm::dvec2 lands = next_centre - contact(landing) * glm::dvec2(1, side);
-        // Where the yarns are as close as they can be, the line has no length and no direction.
-        const double line = dot(lands - leaves, {std::cos(angle), -side * std::sin(angle)});
-        append(Kind::leaving_crest, arcs_[leaving].arc.length(), centre, side, 0, leaving);
-        append(Kind::straight, std::max(0.0, line), leaves, 0, -side * angle);
-        append(Kind::approaching_crest, arcs_[landing].arc.length(), next_centre, -side, 0,
-               landing);
-        turn_ += 2 * angle;
+        const size_t before = previous[k];
+        join(before, next[k]);
+        k = before; // where another line leaves now
+        --remaining;
+        settled = 0;
     }
-    first_crossing_ = (length_ - interval_start) / 2;
+    while (next[k] > k)
+        k = next[k];
+    k = next[k]; // the first
+    std::vector<Touched> result;
+    for (size_t step = 0; step < remaining; ++step, k = next[k])
+        result.push_back({k, next[k], leaving[previous[k]], leaving[k]});
+    return result;
 }
 
-/// The index in arcs_ of the arc of `curve` from its crest to that angle.
-size_t YarnAxis::arc_to(const WrapCurve& curve, double end_angle) {
-    for (size_t i = 0; i < arcs_.size(); ++i)
-        if (arcs_[i].curve == curve && arcs_[i].end_angle == end_angle)
-            return i;
-    arcs_.push_back({curve, end_angle, WrapArc(curve, end_angle)});
-    if (end_angle > 0)
+YarnAxis::YarnAxis(std::span<const Crossing> crossings, double spacing)
+    : crossing_slopes_(crossings.size()), period_(spacing * crossings.size()) {
+    const size_t count = crossings.size();
+    const std::vector<Touched> all = touched(crossings, spacing);
+    const auto along = [&](size_t k) { return (k + 0.5) * spacing; };
+    const auto on_arc = [&](size_t k, double slope) {
+        const double side = side_of(crossings[k]);
+        return glm::dvec2(along(k), crossings[k].centre) +
+               crossings[k].wrap->curve().point(-side * slope) * glm::dvec2(1, side);
+    };
+    for (const Touched& t : all) {
+        append_arc(crossings[t.crossing], along(t.crossing), t.slope_in, t.slope_out);
+        const glm::dvec2 wound(t.next > t.crossing ? 0 : period_, 0);
+        append_line(on_arc(t.crossing, t.slope_out), on_arc(t.next, t.slope_out) + wound,
+                    t.slope_out);
+        const bool crest = t.slope_in * t.slope_out <= 0;
+        crossing_slopes_[t.crossing] =
+            crest
+                ? 0
+                : std::copysign(std::min(std::abs(t.slope_in), std::abs(t.slope_out)), t.slope_in);
+        for (size_t k = (t.crossing + 1) % count; k != t.next; k = (k + 1) % count)
+            crossing_slopes_[k] = t.slope_out;
+        turn_ += std::abs(t.slope_out - t.slope_in);
+    }
+
+    double low = -2 * length_, high = 2 * length_;
+    for (int step = 0; step < 100; ++step) {
+        const double middle = 0.5 * (low + high);
+        (from_first_piece(middle).along < 0 ? low : high) = middle;
+    }
+    origin_ = -high;
+}
+
+void YarnAxis::append_arc(const Crossing& crossing, double along, double slope_in,
+                          double slope_out) {
+    const double side = side_of(crossing);
+    const double first = -side * slope_in, last = std::max(first, -side * slope_out);
+    const WrapCurve& curve = crossing.wrap->curve();
+    if (first <= 0 && last >= 0) {
+        const double crest = crossing.centre + side * curve.support(0);
+        highest_ = std::max(highest_, crest);
+        lowest_ = std::min(lowest_, crest);
+    }
+    if (!(last - first > kNoTurn))
+        return;
+    for (const double angle : {first, last, std::clamp(0.0, first, last)})
         smallest_curvature_radius_ =
-            std::min({smallest_curvature_radius_, curve.curvature_radius(0),
-                      curve.curvature_radius(end_angle)});
-    return arcs_.size() - 1;
+            std::min(smallest_curvature_radius_, curve.curvature_radius(angle));
+    if (std::ranges::find(wraps_, crossing.wrap) == wraps_.end())
+        wraps_.push_back(crossing.wrap);
+    const double begin = crossing.wrap->length(first), end = crossing.wrap->length(last);
+    pieces_.push_back({length_, slope_integral_, glm::dvec2(along, crossing.centre),
+                       crossing.wrap.get(), side, begin});
+    slope_integral_ += slope_integral_in(pieces_.back(), end - begin);
+    length_ += end - begin;
 }
 
-void YarnAxis::append(Kind kind, double length, glm::dvec2 origin, double side, double slope,
-                      size_t arc) {
-    pieces_.push_back({kind, length_, length, origin, side, slope, slope_integral_, arc});
-    length_ += length;
-    slope_integral_ += kind == Kind::straight        ? slope * length
-                       : kind == Kind::leaving_crest ? -side * arcs_[arc].arc.angle_integral(length)
-                                                     : side * arcs_[arc].arc.angle_integral(length);
+void YarnAxis::append_line(glm::dvec2 from, glm::dvec2 to, double slope) {
+    // Where the yarns are as close as they can be, the line has no length and no direction.
+    const double line = std::max(0.0, dot(to - from, {std::cos(slope), std::sin(slope)}));
+    highest_ = std::max({highest_, from.y, to.y});
+    lowest_ = std::min({lowest_, from.y, to.y});
+    pieces_.push_back({length_, slope_integral_, from, nullptr, 0, slope});
+    slope_integral_ += slope * line;
+    length_ += line;
+}
+
+/// ∫ slope ds over the first `t` of a piece.
+double YarnAxis::slope_integral_in(const Piece& piece, double t) const {
+    if (!piece.wrap)
+        return piece.first * t;
+    return -piece.side *
+           (piece.wrap->angle_integral(piece.first + t) - piece.wrap->angle_integral(piece.first));
 }
 
 const YarnAxis::Piece& YarnAxis::piece_at(double s) const {
@@ -100,44 +143,31 @@ const YarnAxis::Piece& YarnAxis::piece_at(double s) const {
     return *(above - 1);
 }
 
-YarnAxis::Point YarnAxis::at(double s) const {
-    s -= first_crossing_;
+YarnAxis::Point YarnAxis::from_first_piece(double s) const {
     const double repeats = std::floor(s / length_);
     s -= repeats * length_;
     const Piece& piece = piece_at(s);
     const double t = s - piece.start;
-    if (piece.kind == Kind::straight) {
-        const glm::dvec2 p =
-            piece.origin + t * glm::dvec2(std::cos(piece.slope), std::sin(piece.slope));
-        return {p.x + repeats * period_, p.y, piece.slope};
+    if (!piece.wrap) {
+        const double slope = piece.first;
+        const glm::dvec2 p = piece.origin + t * glm::dvec2(std::cos(slope), std::sin(slope));
+        return {p.x + repeats * period_, p.y, slope};
     }
-    const double forward = piece.kind == Kind::leaving_crest ? 1 : -1;
-    const auto& [curve, end_angle, arc] = arcs_[piece.arc];
-    const double angle = arc.angle(forward > 0 ? t : piece.length - t);
-    const glm::dvec2 p = piece.origin + curve.point(angle) * glm::dvec2(forward, piece.side);
-    return {p.x + repeats * period_, p.y, -forward * piece.side * angle};
+    const double angle = piece.wrap->angle(piece.first + t);
+    const glm::dvec2 p =
+        piece.origin + piece.wrap->curve().point(angle) * glm::dvec2(1, piece.side);
+    return {p.x + repeats * period_, p.y, -piece.side * angle};
 }
 
+YarnAxis::Point YarnAxis::at(double s) const { return from_first_piece(s - origin_); }
+
 double YarnAxis::slope_integral(double s) const {
-    s -= first_crossing_;
+    s -= origin_;
     const double repeats = std::floor(s / length_);
     s -= repeats * length_;
     const Piece& piece = piece_at(s);
-    const double t = s - piece.start;
-    double integral = repeats * slope_integral_ + piece.slope_integral;
-    switch (piece.kind) {
-    case Kind::straight:
-        integral += piece.slope * t;
-        break;
-    case Kind::leaving_crest:
-        integral -= piece.side * arcs_[piece.arc].arc.angle_integral(t);
-        break;
-    case Kind::approaching_crest:
-        integral += piece.side * (arcs_[piece.arc].arc.angle_integral(piece.length) -
-                                  arcs_[piece.arc].arc.angle_integral(piece.length - t));
-        break;
-    }
-    return integral;
+    return repeats * slope_integral_ + piece.slope_integral +
+           slope_integral_in(piece, s - piece.start);
 }
 
 double YarnAxis::mean_slope(double s, double window) const {

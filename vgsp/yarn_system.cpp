@@ -2,12 +2,11 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/math.h"
+#include "vgsp/yarn_settling.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <set>
-#include <tuple>
 
 namespace rapport {
 namespace {
@@ -74,11 +73,6 @@ void interlace(const Draft& draft, YarnSystem& warp, YarnSystem& weft) {
         }
 }
 
-/// The largest sett for a spacing, in a person's digits, rounded so that it is itself possible.
-std::string largest_sett(double spacing) {
-    return fmt::format("at most {:.2f}", std::floor(1e6 / spacing) / 100);
-}
-
 /// Refuses yarns that are wider than they are apart.
 void check_width(const YarnSystem& system, const Cloth& cloth) {
     for (size_t i = 0; i < system.kind_of.size(); ++i) {
@@ -89,72 +83,6 @@ void check_width(const YarnSystem& system, const Cloth& cloth) {
                 fmt::format("{} for a {} yarn {:.4g} µm wide (yarns too thick for the sett)",
                             largest_sett(width), system.name, width),
                 fmt::format("{:g}", 1e4 / system.spacing));
-    }
-}
-
-/// How far a system's thinnest yarn is from the mean, as crimp.
-double least_crimp(const YarnSystem& system) {
-    double least = HUGE_VAL;
-    for (const SystemYarn& yarn : system.kinds)
-        least = std::min(least, yarn.half_height());
-    return 2 * (system.mean_half_height() - least);
-}
-
-void share_crimp(const Cloth& cloth, YarnSystem& warp, YarnSystem& weft) {
-    const double both = 2 * (warp.mean_half_height() + weft.mean_half_height());
-    const double of_warp =
-        std::max(least_crimp(warp), std::min(cloth.crimp_balance * both, both - least_crimp(weft)));
-    for (SystemYarn& yarn : warp.kinds)
-        yarn.crimp = of_warp + 2 * (yarn.half_height() - warp.mean_half_height());
-    for (SystemYarn& yarn : weft.kinds)
-        yarn.crimp = both - of_warp + 2 * (yarn.half_height() - weft.mean_half_height());
-}
-
-/// Refuses crossed yarns that leave one of `system` no way from above the one to below the next.
-void check_passages(const YarnSystem& system, const YarnSystem& crossed, const Cloth& cloth) {
-    std::set<std::tuple<int, int, int>> passages;
-    for (size_t i = 0; i < system.above.size(); ++i)
-        for (size_t k = 0; k < crossed.kind_of.size(); ++k) {
-            const size_t next = (k + 1) % crossed.kind_of.size();
-            if (system.above[i][k] != system.above[i][next])
-                passages.insert({system.kind_of[i], crossed.kind_of[k], crossed.kind_of[next]});
-        }
-    for (const auto& [own, from, to] : passages) {
-        const SystemYarn &yarn = system.kinds[own], &a = crossed.kinds[from],
-                         &b = crossed.kinds[to];
-        const WrapPassage passage(WrapCurve(a.section.outline, yarn.half_height()),
-                                  WrapCurve(b.section.outline, yarn.half_height()),
-                                  0.5 * (a.crimp + b.crimp));
-        const double smallest = passage.smallest_spacing();
-        if (crossed.spacing < smallest * (1 - kRounding))
-            throw FileError(cloth.path.string(), crossed.sett_name,
-                            fmt::format("{} for a {} yarn {:.4g} µm thick to pass between "
-                                        "{} yarns {:.4g} µm × {:.4g} µm (yarns too thick for "
-                                        "the sett)",
-                                        largest_sett(smallest), system.name, 2 * yarn.half_height(),
-                                        crossed.name, a.half_width() + b.half_width(),
-                                        a.half_height() + b.half_height()),
-                            fmt::format("{:g}", 1e4 / crossed.spacing));
-    }
-}
-
-/// The yarns of `system`, laid over and under those of `crossed`.
-void lay_axes(YarnSystem& system, const YarnSystem& crossed, const Cloth& cloth) {
-    check_passages(system, crossed, cloth);
-    std::vector<std::vector<WrapCurve>> wraps; // [own kind][crossed kind]
-    for (const SystemYarn& yarn : system.kinds) {
-        std::vector<WrapCurve>& about = wraps.emplace_back();
-        for (const SystemYarn& other : crossed.kinds)
-            about.emplace_back(other.section.outline, yarn.half_height());
-    }
-    for (size_t i = 0; i < system.above.size(); ++i) {
-        std::vector<YarnAxis::Crossing> crossings;
-        for (size_t k = 0; k < system.above[i].size(); ++k) {
-            const int kind = crossed.kind_of[k];
-            crossings.push_back({system.above[i][k] != 0, &wraps[system.kind_of[i]][kind],
-                                 crossed.kinds[kind].crimp});
-        }
-        system.axes.emplace_back(crossings, crossed.spacing, system.yarn(i).crimp);
     }
 }
 
@@ -193,11 +121,8 @@ void close_twist(YarnSystem& system, const Cloth& cloth) {
 
 } // namespace
 
-double YarnSystem::mean_half_height() const {
-    double mean = 0;
-    for (const SystemYarn& yarn : kinds)
-        mean += yarn.share * yarn.half_height();
-    return mean;
+std::string largest_sett(double spacing) {
+    return fmt::format("at most {:.2f}", std::floor(1e6 / spacing) / 100);
 }
 
 double YarnSystem::mean_half_width() const {
@@ -209,8 +134,9 @@ double YarnSystem::mean_half_width() const {
 
 double YarnSystem::greatest_height() const {
     double greatest = 0;
-    for (const SystemYarn& yarn : kinds)
-        greatest = std::max(greatest, yarn.crimp / 2 + yarn.half_height());
+    for (size_t i = 0; i < axes.size(); ++i)
+        greatest = std::max(greatest,
+                            std::max(axes[i].highest(), -axes[i].lowest()) + yarn(i).half_height());
     return greatest;
 }
 
@@ -236,9 +162,7 @@ YarnSystems lay_systems(const Cloth& cloth, const Draft& draft, int least_repeat
     interlace(draft, warp, weft);
     check_width(warp, cloth);
     check_width(weft, cloth);
-    share_crimp(cloth, warp, weft);
-    lay_axes(warp, weft, cloth);
-    lay_axes(weft, warp, cloth);
+    settle(cloth, warp, weft);
     warp.repeats = weft.repeats = least_repeats;
     close_twist(warp, cloth);
     close_twist(weft, cloth);

@@ -13,7 +13,6 @@ struct SystemYarn {
     const YarnSpec* yarn = nullptr;
     SectionLayout section;
     double share = 0; ///< of the system's yarns
-    double crimp = 0; ///< Peirce's h: the axis' height from peak to peak [µm]
 
     double half_height() const { return section.outline.half_height; }
     double half_width() const { return section.outline.half_width; }
@@ -31,7 +30,6 @@ struct YarnSystem {
     double twist_rounding = 0;               ///< relative
 
     const SystemYarn& yarn(size_t index) const { return kinds[kind_of[index % kind_of.size()]]; }
-    double mean_half_height() const;
     double mean_half_width() const;
     double greatest_height() const; ///< of the yarns' outlines over the cloth's middle [µm]
     double mean_crimp() const;      ///< axis length over straight length − 1
@@ -41,13 +39,14 @@ struct YarnSystems {
     YarnSystem warp, weft;
 };
 
-/// Lays the yarns of `draft`, as weavable() gives it, over and under each other. Peirce's geometry:
-/// the crimp heights share out the thickness of warp and weft as crimp_balance says, as far as that
-/// leaves none negative; a yarn thicker than its system's mean has so much more, so that unequal
-/// yarns touch at every crossing. Throws FileErrors at the cloth's path: yarns too thick for the
-/// sett, fibres that do not fit their yarn, a twist that does not close. The systems have at least
-/// `least_repeats` of the draft.
+/// Lays the yarns of `draft`, as weavable() gives it, over and under each other (yarn_settling.h).
+/// Throws FileErrors at the cloth's path: yarns too thick for the sett, fibres that do not fit
+/// their yarn, a twist that does not close. The systems have at least `least_repeats` of the draft.
 YarnSystems lay_systems(const Cloth& cloth, const Draft& draft, int least_repeats = 1);
+
+/// The largest sett for a spacing [µm], in a person's digits, rounded so that it is itself
+/// possible.
+std::string largest_sett(double spacing);
 
 /// Turns per repeat of the draft, along a yarn's axis, of the symmetry of its section's packing
 /// and, if it is plied, of its ring of singles. 0 for what does not turn.

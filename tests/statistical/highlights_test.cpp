@@ -37,40 +37,43 @@ void print_residuals(const MeasuredCloth& measured, const std::vector<Highlight>
 }
 
 /// Whether there is one highlight at each of the angles and no other, each nearer than one standard
-/// deviation of the measured lobe's narrower part, no broader than its wider part, and no sharper
-/// than three quarters of the sharpest lobe of all that were measured.
+/// deviation of the measured lobe's narrower part and no broader than its wider part, and the
+/// brightest no sharper than 0.7 of the sharpest lobe of all that were measured: at half its height
+/// a GGX lobe is 0.77 as wide as a normal distribution of the same slopes. (Of a highlight on
+/// another's flank, less than its own width lies above its ground.)
 bool agrees(const MeasuredCloth& measured, const std::vector<double>& angles,
             const std::vector<Highlight>& found) {
     if (found.size() != angles.size())
         return false;
     for (size_t i = 0; i < angles.size(); ++i)
         if (std::abs(found[i].angle - angles[i]) > measured.narrowest() ||
-            found[i].width > measured.widest() ||
-            found[i].width < 0.75 * tests::kSatinCharmeuse.narrowest())
+            found[i].width > measured.widest())
             return false;
-    return true;
+    const auto brightest = std::ranges::max_element(found, {}, &Highlight::contrast);
+    return brightest->width >= 0.7 * tests::kSatinCharmeuse.narrowest();
 }
 
-TEST(Highlights, OfSilkCharmeuseAreThree) {
+TEST(Highlights, OfSilkCharmeuseAreFive) {
     const MeasuredCloth& measured = tests::kSatinCharmeuse;
+    const double inner = measured.exit(measured.inclinations[1]);
     const double outer = measured.exit(measured.inclinations.back());
     const Cloth cloth = our_cloth("silk-charmeuse");
     const auto along = highlights(tests::mirror_scan(cloth, kAlongWarp, kPaths));
     print_residuals(measured, along);
-    EXPECT_TRUE(agrees(measured, {0, outer}, along));
+    EXPECT_TRUE(agrees(measured, {0, inner, outer}, along));
 
     // As sharp as images in smooth fibres are, they are not those of the cloth.
     Cloth smooth = cloth;
     smooth.warp.fibre.roughness = smooth.weft.fibre.roughness = 0;
-    EXPECT_FALSE(agrees(measured, {0, outer},
+    EXPECT_FALSE(agrees(measured, {0, inner, outer},
                         highlights(tests::mirror_scan(smooth, kAlongWarp, kPaths / 2))));
 
-    EXPECT_FALSE(agrees(measured, {0, outer},
+    EXPECT_FALSE(agrees(measured, {0, inner, outer},
                         highlights(tests::mirror_scan(cloth, kAlongWeft, kPaths / 4))));
     Cloth straight = cloth;
     straight.crimp_balance = 0;
     straight.ends_per_cm = 50; // so that the weft has room to take all crimp
-    EXPECT_FALSE(agrees(measured, {0, outer},
+    EXPECT_FALSE(agrees(measured, {0, inner, outer},
                         highlights(tests::mirror_scan(straight, kAlongWarp, kPaths / 4))));
 }
 

@@ -27,7 +27,11 @@ struct Setting {
     double both() const { return 2 * (crossed.half_height + own_half_height); }
     WrapCurve wrap() const { return {crossed, own_half_height}; }
     YarnAxis axis(const std::vector<uint8_t>& above) const {
-        return {above, spacing, wrap(), share * both(), (1 - share) * both()};
+        const auto about = std::make_shared<WrapArc>(wrap());
+        std::vector<YarnAxis::Crossing> crossings;
+        for (size_t k = 0; k < above.size(); ++k)
+            crossings.push_back({above[k] != 0, centre(above, int(k)).y, about});
+        return {crossings, spacing};
     }
     /// The centre of the crossed section k.
     dvec2 centre(const std::vector<uint8_t>& above, int k) const {
@@ -194,16 +198,19 @@ TEST(YarnAxis, MeanSlopeIsTheAverage) {
     }
 }
 
+WrapPassage down(const WrapCurve& curve, double rise) {
+    return {{&curve, true}, {&curve, false}, rise};
+}
+
 TEST(YarnAxis, SmallestSpacingIsWhereTheLineVanishes) {
     const WrapCurve circle({60, 60}, 50);
     for (double crimp : {0.0, 80.0, 150.0, 220.0})
-        EXPECT_NEAR(WrapPassage(circle, circle, crimp).smallest_spacing(),
-                    std::sqrt(220 * 220 - crimp * crimp), 1e-4);
+        EXPECT_NEAR(down(circle, crimp).smallest_spacing(), std::sqrt(220 * 220 - crimp * crimp),
+                    1e-4);
 
     for (SectionOutline crossed : {SectionOutline{60, 60}, SectionOutline{100, 40}}) {
         Setting cloth{crossed, 50, 0, 0.4};
-        cloth.spacing =
-            WrapPassage(cloth.wrap(), cloth.wrap(), 0.6 * cloth.both()).smallest_spacing();
+        cloth.spacing = down(cloth.wrap(), 0.6 * cloth.both()).smallest_spacing();
         const YarnAxis axis = cloth.axis(kPlain);
         for (double s = 0; s < axis.length(); s += 0.5)
             EXPECT_NEAR(length(position(axis, s + 0.5) - position(axis, s)), 0.5, 1e-4);
@@ -211,6 +218,78 @@ TEST(YarnAxis, SmallestSpacingIsWhereTheLineVanishes) {
         EXPECT_THROW(cloth.axis(kPlain), std::invalid_argument);
         EXPECT_NO_THROW(cloth.axis({1, 1})); // a float needs no room between the crossed yarns
     }
+}
+
+// The angles that a line makes with the centres', whether these rise or fall.
+TEST(YarnAxis, LinesTouchCirclesAsTheClosedFormsSay) {
+    const WrapCurve small({60, 60}, 50), large({90, 90}, 50);
+    const double spacing = 400;
+    for (double rise : {-200.0, -40.0, 0.0, 90.0, 230.0, 500.0}) {
+        const double apart = std::hypot(spacing, rise), centres = std::atan2(rise, spacing);
+        for (const auto& [a, b] : {std::pair(&small, &small), {&small, &large}, {&large, &small}}) {
+            const double from = a->support(0), to = b->support(0);
+            EXPECT_NEAR(WrapPassage({a, true}, {b, true}, rise).slope(spacing),
+                        centres + std::asin((to - from) / apart), 1e-12);
+            EXPECT_NEAR(WrapPassage({a, false}, {b, false}, rise).slope(spacing),
+                        centres - std::asin((to - from) / apart), 1e-12);
+            const double across = std::asin((from + to) / apart);
+            const WrapPassage falls({a, true}, {b, false}, rise),
+                rises({a, false}, {b, true}, rise);
+            if (centres - across > -kPi / 2) {
+                EXPECT_NEAR(falls.slope(spacing), centres - across, 1e-12) << rise;
+            }
+            if (centres + across < kPi / 2) {
+                EXPECT_NEAR(rises.slope(spacing), centres + across, 1e-12) << rise;
+            }
+        }
+    }
+    // A line that would turn back is none: it needs the sections' whole widths.
+    EXPECT_NEAR(down(small, -300).smallest_spacing(), 220, 1e-9);
+    EXPECT_NEAR(down(small, -300).slope(220), -kPi / 2, 1e-6);
+    EXPECT_EQ(down(small, 250).smallest_spacing(), 0);
+}
+
+// A float over yarns that stand at different heights is the string drawn over them: it touches
+// those that stand out and is clear of the others.
+TEST(YarnAxis, FloatsAreDrawnOverTheHighest) {
+    const Setting cloth;
+    const std::vector<double> centres{60, -20, 15, 0, 12, -60};
+    const auto about = std::make_shared<WrapArc>(cloth.wrap());
+    std::vector<YarnAxis::Crossing> crossings;
+    for (const double centre : centres)
+        crossings.push_back({!crossings.empty(), centre, about});
+    const YarnAxis axis(crossings, cloth.spacing);
+
+    // Wherever the repeat begins, the same axis.
+    for (int begin = 1; begin < 6; ++begin) {
+        std::rotate(crossings.begin(), crossings.begin() + 1, crossings.end());
+        const YarnAxis moved(crossings, cloth.spacing);
+        EXPECT_NEAR(moved.length(), axis.length(), 1e-9);
+        for (double along = 10; along < axis.period(); along += 97)
+            EXPECT_NEAR(height_at(moved, along), height_at(axis, along + begin * cloth.spacing),
+                        1e-6);
+    }
+
+    std::vector<double> nearest(centres.size(), HUGE_VAL);
+    for (double s = 0; s < axis.length(); s += 0.5)
+        for (int k = -1; k < 7; ++k) {
+            double& least = nearest[size_t(k + 6) % 6];
+            const dvec2 centre((k + 0.5) * cloth.spacing, centres[size_t(k + 6) % 6]);
+            least = std::min(least, length(position(axis, s) - centre));
+        }
+    for (size_t k = 0; k < centres.size(); ++k)
+        EXPECT_NEAR(nearest[k], k == 3 ? 110 + 13.5 : 110, 0.02) << k;
+
+    // Circles of one size: lines as steep as those between the centres.
+    const auto slope = [&](double rise, int intervals) {
+        return std::atan(rise / (intervals * cloth.spacing));
+    };
+    const std::vector<double> expected{
+        0, slope(35, 1), 0, slope(-3, 2), slope(-3, 2), slope(-72, 1)};
+    for (size_t k = 0; k < centres.size(); ++k)
+        EXPECT_NEAR(axis.crossing_slopes()[k], expected[k], 1e-9) << k;
+    EXPECT_NEAR(axis.highest(), 15 + 110, 1e-9);
+    EXPECT_NEAR(axis.lowest(), 60 - 110, 1e-9);
 }
 
 } // namespace
