@@ -18,7 +18,7 @@ inline Draft scattered_draft(int size) {
 
 /// Such a draft in yarns of one smooth fibre, so loosely woven that they turn little.
 inline Cloth monofilament_cloth(int size) {
-    YarnSpec yarn = loose_yarn(60, 58);
+    YarnSpec yarn = loose_yarn(30, 28);
     yarn.fibres = 1;
     return cloth_of(scattered_draft(size), yarn, yarn, 25, 25);
 }
