@@ -17,25 +17,25 @@ printed too. A chart maps exits to a and b in [0, 1), and bins are planes over e
 rings are planes of the intensity itself. All are limited to stay positive.
 
 Found, without noise, of 2 MB in light from the front and from behind. Satin decides, having the largest error:
-0.27 and 0.30 about the cone of the yarns that show (the warp on both sides), 0.35 and 0.33 about the mirror
-direction, 0.50 and 0.40 about the other yarns' cone, and 0.42 to 0.45 in all ways that stand still, of which even
-6.75 MB do not help (0.41 to 0.43: what is wrong is between the nodes of incidence). The cone's 0.34 MB of a quarter
-of the nodes have 0.44 in front, a twentieth of the bytes of 5° bins for their error, but 0.51 from behind. Of cloths
-without a sharp highlight, rings of near-equal solid angle are better than the cone: 0.17 and 0.16 against 0.19 and
-0.18 on the plain weave, 0.04 and 0.00 against 0.11 and 0.09 on the gabardine. Finer θ towards grazing helps the
-gabardine alone, by 0.02. The cone is also the cheapest to look up, having one arc tangent: 109 ns, about the mirror
-direction 140, in rings 117, on the disc 141, in 5° bins 146, which no longer fit into the cache. How much finer the
-columns are at the highlight hardly matters on cloths without one; on satin 0.15 to 0.25 of equal ones are the best.
-With the noise of 50,000 paths a node, 2 MB of the cone have 0.33 and 0.36, 0.22 and 0.21, 0.17 and 0.16 on the three,
-6.75 MB of 5° bins 0.49 and 0.49, 0.24 and 0.23, 0.26 and 0.25.
+0.23 and 0.23 about the cone of the yarns that show (the warp on both sides), 0.31 and 0.29 about the mirror
+direction, 0.45 and 0.44 about the other yarns' cone, and 0.36 to 0.43 in all ways that stand still, of which even
+6.75 MB hardly help (0.33 to 0.35: what is wrong is between the nodes of incidence). The cone's 1 MB have 0.34 and
+0.32, its 0.34 MB of a quarter of the nodes 0.43 and 0.43, where 5° bins have 0.34. Of cloths without a sharp
+highlight, rings of near-equal solid angle are better than the cone: 0.18 and 0.16 against 0.19 and 0.18 on the plain
+weave, 0.03 and 0.03 against 0.10 and 0.08 on the gabardine. Finer θ towards grazing helps the gabardine alone, by
+0.02 to 0.03, at as many bytes. The cone is also the cheapest to look up, having one arc tangent: 114 ns, about the
+mirror direction 136, in rings 119, on the disc 149, in 5° bins 131, which no longer fit into the cache. How much
+finer the columns are at the highlight hardly matters on cloths without one; on satin 0.15 to 0.25 of equal ones are
+the best. With the noise of 50,000 paths a node, 2 MB of the cone have 0.30 and 0.30, 0.22 and 0.21, 0.17 and 0.16 on
+the three, 6.75 MB of 5° bins 0.43 and 0.44, 0.24 and 0.23, 0.25 and 0.25.
 Half precision changes the errors' fifth digit, and single would double all bytes; only 2 to 4 % of the bins are
 empty, so leaving out empty blocks gains nothing. An error of 0 is one that the noise hides.
 
-Between the nodes, the highlight of the satin's front is within 0.002 of where the paths have it at five of six
-held-out directions either way, for it lies on the cone. Where it is moved, its profile is nearer to the paths' at five
-of six; its height is theirs at two, 4 to 9 % above at three and 20 % above at θ = 75°, where it grows faster than
-linearly. A blend in place has up to 15 % less. Peaks farther than a quarter of the way from the ridge, as those of
-the yarns' slopes in light from the side, are wider in the table than in truth.
+Between the nodes, where the highlight of the satin's front is moved, its profile is nearer to the paths' at five of
+six held-out directions than where it is blended in place, and its height off by 5 % (RMS; at most 9 %, at θ = 75°,
+where it grows faster than linearly) against 6 % (at most 13 %), of which the paths' own error is 3 %. Peaks farther
+than a quarter of the way from the ridge, as those of the yarns' slopes in light from the side, are wider in the table
+than in truth.
 """
 import json
 import pathlib
