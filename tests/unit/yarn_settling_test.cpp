@@ -98,7 +98,8 @@ TEST(YarnSettling, FloatsAreLiftedAsFarAsTheSettHasRoom) {
         Cloth cloth = satin(sett, 0.8);
         cloth.picks_per_cm = 53;
         cloth.weft.width_um = cloth.weft.height_um = 76;
-        const YarnAxis& pick = systems_of(cloth).weft.axes[0];
+        const YarnSystems systems = systems_of(cloth);
+        const YarnAxis& pick = systems.weft.axes[0];
         return pick.highest() - pick.lowest();
     };
     const double open = height(30);
