@@ -8,9 +8,8 @@
 namespace rapport {
 namespace {
 
-constexpr double kFlatness = 1e-3; ///< stiffness that keeps cloth from long waves
-constexpr double kTolerance =
-    1e-9; ///< of the forces left over, relative to the greatest separation
+constexpr double kFlatness = 1e-3;  ///< stiffness that keeps cloth from long waves
+constexpr double kTolerance = 1e-9; ///< of the forces left over, to the greatest separation
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -70,13 +69,14 @@ CrossingHeights crossing_heights(std::span<const double> separation, int ends, i
         heights.weft.push_back((balance - 1) * apart);
     }
 
+    if (lift == 0)
+        return heights;
+
     // Conjugate gradients; both yarns move alike, so that they stay apart as they are.
     std::vector<double> residual(count), direction, forced(count);
     bending.forces(heights.warp, heights.weft, residual);
     direction = residual;
     double square = dot(residual, residual);
-    if (lift == 0)
-        return heights;
     const double enough = count * std::pow(kTolerance * greatest, 2);
     for (size_t step = 0; square > enough && step < 10 * count; ++step) {
         bending.forces(direction, direction, forced);

@@ -145,10 +145,9 @@ from_middle(const CrossingHeights& heights, const YarnSystem& warp, const YarnSy
 }
 
 /// Lays the yarns with so much of the lift, or tells where there is no room for it.
-std::optional<TooClose> settle_lifted(YarnSystem& warp, YarnSystem& weft, double balance,
-                                      double lift) {
+std::optional<TooClose> settle_lifted(YarnSystem& warp, YarnSystem& weft, const Wraps& of_warp,
+                                      const Wraps& of_weft, double balance, double lift) {
     const size_t ends = warp.above.size(), picks = weft.above.size();
-    const Wraps of_warp = wraps_of(warp, weft), of_weft = wraps_of(weft, warp);
     Slopes warp_slopes(ends, std::vector<double>(picks)),
         weft_slopes(picks, std::vector<double>(ends));
     std::vector<double> separation(ends * picks);
@@ -182,8 +181,9 @@ std::optional<TooClose> settle_lifted(YarnSystem& warp, YarnSystem& weft, double
 } // namespace
 
 void settle(const Cloth& cloth, YarnSystem& warp, YarnSystem& weft) {
+    const Wraps of_warp = wraps_of(warp, weft), of_weft = wraps_of(weft, warp);
     const auto at_lift = [&](double lift) {
-        return settle_lifted(warp, weft, cloth.crimp_balance, lift);
+        return settle_lifted(warp, weft, of_warp, of_weft, cloth.crimp_balance, lift);
     };
     const std::optional<TooClose> lifted = at_lift(1);
     if (!lifted)
