@@ -162,7 +162,7 @@ struct Cloth {
     double ends_per_cm = 0;  ///< warp sett
     double picks_per_cm = 0; ///< weft sett
     /// Warp's share of the crimp, as Peirce's heights would be: h_warp / (h_warp + h_weft), [0, 1].
-    /// So much stiffer are picks than ends, of both together (crossing_heights.h).
+    /// So much stiffer are picks than ends, of both together (crossing_lift.h).
     double crimp_balance = 0.5;
     YarnSpec warp, weft; ///< of all threads, unless the draft has the yarns of each
     std::vector<NamedYarn> yarns;

@@ -2,7 +2,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/math.h"
-#include "vgsp/crossing_heights.h"
+#include "vgsp/crossing_lift.h"
 
 #include <algorithm>
 #include <cmath>
@@ -119,38 +119,41 @@ std::optional<TooClose> lay_axes(YarnSystem& system, const YarnSystem& crossed, 
     return std::nullopt;
 }
 
-/// Heights as [end][pick] and [pick][end], from the middle of the yarns' outlines.
+/// The heights of ends [end][pick] and picks [pick][end] so much over the shared ones, from the
+/// middle of the yarns' outlines.
 std::pair<std::vector<std::vector<double>>, std::vector<std::vector<double>>>
-from_middle(const CrossingHeights& heights, const YarnSystem& warp, const YarnSystem& weft) {
+heights_of(const std::vector<double>& separation, const std::vector<double>& lift, double balance,
+           const YarnSystem& warp, const YarnSystem& weft) {
     const size_t ends = warp.above.size(), picks = weft.above.size();
-    double highest = -HUGE_VAL, lowest = HUGE_VAL;
-    const auto reach = [&](double height, const SystemYarn& yarn) {
-        highest = std::max(highest, height + yarn.half_height());
-        lowest = std::min(lowest, height - yarn.half_height());
-    };
-    for (size_t end = 0; end < ends; ++end)
-        for (size_t pick = 0; pick < picks; ++pick) {
-            reach(heights.warp[end * picks + pick], warp.yarn(end));
-            reach(heights.weft[end * picks + pick], weft.yarn(pick));
-        }
-    const double middle = 0.5 * (highest + lowest);
     std::vector<std::vector<double>> of_ends(ends, std::vector<double>(picks)),
         of_picks(picks, std::vector<double>(ends));
+    double highest = -HUGE_VAL, lowest = HUGE_VAL;
     for (size_t end = 0; end < ends; ++end)
         for (size_t pick = 0; pick < picks; ++pick) {
-            of_ends[end][pick] = heights.warp[end * picks + pick] - middle;
-            of_picks[pick][end] = heights.weft[end * picks + pick] - middle;
+            const size_t crossing = end * picks + pick;
+            of_ends[end][pick] = balance * separation[crossing] + lift[crossing];
+            of_picks[pick][end] = (balance - 1) * separation[crossing] + lift[crossing];
+            for (const auto& [height, reach] :
+                 {std::pair(of_ends[end][pick], warp.yarn(end).half_height()),
+                  std::pair(of_picks[pick][end], weft.yarn(pick).half_height())}) {
+                highest = std::max(highest, height + reach);
+                lowest = std::min(lowest, height - reach);
+            }
         }
+    for (auto* system : {&of_ends, &of_picks})
+        for (std::vector<double>& yarn : *system)
+            for (double& height : yarn)
+                height -= 0.5 * (highest + lowest);
     return {std::move(of_ends), std::move(of_picks)};
 }
 
-/// Lays the yarns with so much of the lift, or tells where there is no room for it.
+/// Lays the yarns with `share` of the lift, or tells where there is no room for it.
 std::optional<TooClose> settle_lifted(YarnSystem& warp, YarnSystem& weft, const Wraps& of_warp,
-                                      const Wraps& of_weft, double balance, double lift) {
+                                      const Wraps& of_weft, double balance, double share) {
     const size_t ends = warp.above.size(), picks = weft.above.size();
     Slopes warp_slopes(ends, std::vector<double>(picks)),
         weft_slopes(picks, std::vector<double>(ends));
-    std::vector<double> separation(ends * picks);
+    std::vector<double> separation(ends * picks), lift(ends * picks);
     for (int settling = 0; settling < kMostSettlings; ++settling) {
         double change = 0, greatest = 0; // of the separations
         for (size_t end = 0; end < ends; ++end)
@@ -165,9 +168,12 @@ std::optional<TooClose> settle_lifted(YarnSystem& warp, YarnSystem& weft, const 
             }
         if (change <= kSettled * greatest)
             break;
-        const CrossingHeights heights =
-            crossing_heights(separation, int(ends), int(picks), balance, lift);
-        const auto [of_ends, of_picks] = from_middle(heights, warp, weft);
+        std::vector<double> part(ends * picks);
+        if (share > 0) {
+            lift = crossing_lift(separation, int(ends), int(picks), balance, std::move(lift));
+            std::ranges::transform(lift, part.begin(), [&](double all) { return share * all; });
+        }
+        const auto [of_ends, of_picks] = heights_of(separation, part, balance, warp, weft);
         if (auto too_close = lay_axes(warp, weft, of_warp, of_ends, warp_slopes))
             return too_close;
         if (auto too_close = lay_axes(weft, warp, of_weft, of_picks, weft_slopes))
@@ -182,13 +188,13 @@ std::optional<TooClose> settle_lifted(YarnSystem& warp, YarnSystem& weft, const 
 
 void settle(const Cloth& cloth, YarnSystem& warp, YarnSystem& weft) {
     const Wraps of_warp = wraps_of(warp, weft), of_weft = wraps_of(weft, warp);
-    const auto at_lift = [&](double lift) {
-        return settle_lifted(warp, weft, of_warp, of_weft, cloth.crimp_balance, lift);
+    const auto lifted_by = [&](double share) {
+        return settle_lifted(warp, weft, of_warp, of_weft, cloth.crimp_balance, share);
     };
-    const std::optional<TooClose> lifted = at_lift(1);
+    const std::optional<TooClose> lifted = lifted_by(1);
     if (!lifted)
         return;
-    if (const std::optional<TooClose> flat = at_lift(0)) {
+    if (const std::optional<TooClose> flat = lifted_by(0)) {
         const TooClose& nearer =
             flat->smallest / flat->spacing < lifted->smallest / lifted->spacing ? *flat : *lifted;
         throw FileError(cloth.path.string(), nearer.sett_name, nearer.expected(),
@@ -197,9 +203,9 @@ void settle(const Cloth& cloth, YarnSystem& warp, YarnSystem& weft) {
     double low = 0, high = 1;
     while (high - low > kLiftStep) {
         const double middle = 0.5 * (low + high);
-        (at_lift(middle) ? high : low) = middle;
+        (lifted_by(middle) ? high : low) = middle;
     }
-    at_lift(low);
+    lifted_by(low);
 }
 
 } // namespace rapport

@@ -1,15 +1,16 @@
-#include "vgsp/crossing_heights.h"
+#include "vgsp/crossing_lift.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 namespace rapport {
 namespace {
 
 constexpr double kFlatness = 1e-3;  ///< stiffness that keeps cloth from long waves
-constexpr double kTolerance = 1e-9; ///< of the forces left over, to the greatest separation
+constexpr double kTolerance = 1e-6; ///< of the forces left over, to the greatest separation
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -57,25 +58,26 @@ class Bending {
 
 } // namespace
 
-CrossingHeights crossing_heights(std::span<const double> separation, int ends, int picks,
-                                 double balance, double lift) {
+std::vector<double> crossing_lift(std::span<const double> separation, int ends, int picks,
+                                  double balance, std::vector<double> start) {
     const size_t count = separation.size();
-    Bending bending(ends, picks, balance);
+    std::vector<double> lift = std::move(start);
+    lift.resize(count);
+    std::vector<double> warp(count), weft(count);
     double greatest = 0;
-    CrossingHeights heights;
-    for (const double apart : separation) {
-        greatest = std::max(greatest, std::abs(apart));
-        heights.warp.push_back(balance * apart);
-        heights.weft.push_back((balance - 1) * apart);
+    for (size_t k = 0; k < count; ++k) {
+        warp[k] = balance * separation[k] + lift[k];
+        weft[k] = (balance - 1) * separation[k] + lift[k];
+        greatest = std::max(greatest, std::abs(separation[k]));
     }
 
-    if (lift == 0)
-        return heights;
-
-    // Conjugate gradients; both yarns move alike, so that they stay apart as they are.
-    std::vector<double> residual(count), direction, forced(count);
-    bending.forces(heights.warp, heights.weft, residual);
-    direction = residual;
+    // Conjugate gradients.
+    Bending bending(ends, picks, balance);
+    std::vector<double> residual(count), forced(count);
+    bending.forces(warp, weft, residual);
+    for (size_t k = 0; k < count; ++k)
+        residual[k] -= kFlatness * lift[k];
+    std::vector<double> direction = residual;
     double square = dot(residual, residual);
     const double enough = count * std::pow(kTolerance * greatest, 2);
     for (size_t step = 0; square > enough && step < 10 * count; ++step) {
@@ -84,8 +86,7 @@ CrossingHeights crossing_heights(std::span<const double> separation, int ends, i
             forced[k] -= kFlatness * direction[k];
         const double length = -square / dot(direction, forced);
         for (size_t k = 0; k < count; ++k) {
-            heights.warp[k] += length * direction[k];
-            heights.weft[k] += length * direction[k];
+            lift[k] += length * direction[k];
             residual[k] += length * forced[k];
         }
         const double before = square;
@@ -93,12 +94,7 @@ CrossingHeights crossing_heights(std::span<const double> separation, int ends, i
         for (size_t k = 0; k < count; ++k)
             direction[k] = residual[k] + square / before * direction[k];
     }
-    for (size_t k = 0; k < count; ++k) {
-        const double less = (1 - lift) * (heights.warp[k] - balance * separation[k]);
-        heights.warp[k] -= less;
-        heights.weft[k] -= less;
-    }
-    return heights;
+    return lift;
 }
 
 } // namespace rapport
