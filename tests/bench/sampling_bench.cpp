@@ -50,7 +50,6 @@ SceneDescription under_sky(const std::filesystem::path& model, const std::filesy
     // Skies are +z up, models +y.
     scene.lights = {
         {"infinite", params, glm::rotate(glm::mat4(1), radians(-90.0f), glm::vec3(1, 0, 0))}};
-    scene.settings.sampler = Sampler::Kind::independent;
     return scene;
 }
 
@@ -100,7 +99,7 @@ void compare_samplers(const std::filesystem::path& model, const std::filesystem:
     std::fprintf(stderr, "%s: %s\n", cloth.filename().c_str(), by_lobes->describe().c_str());
 
     uint64_t seed = 0;
-    for (const int samples : {2, 8, 32})
+    for (const int samples : {4, 16, 64})
         for (int round = 0; round < kRounds; ++round)
             for (const auto& [name, material] :
                  {std::pair<const char*, std::shared_ptr<const Bsdf>>("table", by_table),

@@ -195,9 +195,9 @@ TEST(HotPixel, AmongAMillionIsSampledByItsLight) {
     // Flat cells sample the tent of the hot pixel with E[w²] = 1.444² (in each dimension, ¾ of the
     // light lies in the middle cell, where E[w²] is 28/27, and ¼ in those beside it, 8/3). It makes
     // 0.74 of the radiance; the even rest is below the mean and left to the BSDF, which finds it
-    // without noise: 0.74² · (2.09 − 1) = 0.60 per candidate, of which a sample has four.
+    // without noise: 0.74² · (2.09 − 1) = 0.60 per candidate, of which a sample has three.
     const double noise = std::sqrt(picture.mean("variance.G")) / picture.mean();
-    EXPECT_LT(noise, std::sqrt(0.60 / 4 / 64));
+    EXPECT_LT(noise, std::sqrt(0.60 / 3 / 64));
     const Picture even = white_ground(sky_with_hot_pixel(kSize, kSize, 0, 1));
     EXPECT_NEAR(even.mean(), 1, 4 * even.error() + 1e-3);
 }
