@@ -68,8 +68,7 @@ std::vector<int> plan_samples(const Film& film, double error) {
 
     std::vector<double> bounds;
     for (size_t i = 0; i < noise.size(); ++i)
-        bounds.push_back(needs[i] <= *last ? square(error * noise[i].mean)
-                                           : std::numeric_limits<double>::infinity());
+        bounds.push_back(square(error * std::max(noise[i].mean, roots[i] / *last)));
     const double factor = common_factor(bounds, roots, square(error * film.noise().mean));
     for (size_t i = 0; i < plan.size(); ++i) {
         const double target = std::min(bounds[i], factor * roots[i]) / kMargin;

@@ -1,8 +1,10 @@
+#include "renderer/core/rng.h"
 #include "renderer/integrator/path_tracer.h"
 #include "renderer/integrator/sample_plan.h"
 #include "tests/support/long_run.h"
 #include "tests/support/small_scenes.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <numeric>
 
@@ -106,6 +108,28 @@ TEST(RenderError, AStoppedPictureIsWhole) {
     const Image image = film.image();
     EXPECT_EQ(image.find("variance.R"), nullptr);
     EXPECT_GT(image.find("N.Z")->at(48 * 24 + 24), 0.1f);
+}
+
+/// The one tile in twenty that may stay noisier than asked, here a dark one, which counts for
+/// little in the whole picture, has no fewer samples than the others.
+TEST(SamplePlan, GivesNoTileUp) {
+    constexpr int kTiles = 20, kSize = 16, kSamples = 16, kNoisiest = 7;
+    Film film({kTiles * kSize, kSize});
+    CounterRng rng(1, Purpose::test, 0, 0);
+    for (int x = 0; x < kTiles * kSize; ++x)
+        for (int y = 0; y < kSize; ++y)
+            for (int number = 0; number < kSamples; ++number) {
+                const float even = rng.uniform_float() - 0.5f;
+                film.add(x, y, number,
+                         {Rgb(x / kSize == kNoisiest ? 0.2f * (1 + 2 * even) : 1 + even)});
+            }
+    for (Film::Tile& tile : film.tiles())
+        tile.samples = kSamples;
+    const std::vector<int> plan = plan_samples(film, 0.05);
+    // Of variance 1/12 per sample, known to 9 % from as many pixels, in all channels at once.
+    EXPECT_NEAR(plan[0], 1.1 / 12 / square(0.05), 10);
+    EXPECT_NEAR(plan[kNoisiest], *std::ranges::max_element(plan), 1);
+    EXPECT_LT(plan[kNoisiest], 50); // and not the 147 that its own noise would ask for
 }
 
 TEST(SamplePlan, AsksForNothingOfABlackPicture) {
