@@ -8,11 +8,11 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
+#include <stdexcept>
 
 namespace rapport {
 namespace {
 
-constexpr double kRounding = 1e-9; ///< relative; what a length that just suffices may lack
 constexpr double kSettled = 1e-4;  ///< relative change of the separations that counts as none
 constexpr double kStraight = 1e-6; ///< bend of a yarn, in parts of its height, that is none
 constexpr int kMostSettlings = 30;
@@ -75,25 +75,26 @@ struct TooClose {
     }
 };
 
-std::optional<TooClose> check_passages(const std::vector<YarnAxis::Crossing>& crossings,
-                                       const YarnSystem& system, size_t index,
-                                       const YarnSystem& crossed) {
+/// The closest of the crossed yarns.
+TooClose too_close(const std::vector<YarnAxis::Crossing>& crossings, const YarnSystem& system,
+                   size_t index, const YarnSystem& crossed) {
+    double smallest = 0;
+    size_t closest = 0;
     for (size_t k = 0; k < crossings.size(); ++k) {
         const YarnAxis::Crossing &from = crossings[k], &to = crossings[(k + 1) % crossings.size()];
-        const double smallest = WrapPassage({&from.wrap->curve(), from.above},
-                                            {&to.wrap->curve(), to.above}, to.centre - from.centre)
-                                    .smallest_spacing();
-        if (crossed.spacing >= smallest * (1 - kRounding))
-            continue;
-        const SystemYarn &a = crossed.yarn(k), &b = crossed.yarn(k + 1);
-        return TooClose{smallest, crossed.spacing, crossed.sett_name.c_str(),
-                        fmt::format("a {} yarn {:.4g} µm thick to pass between {} yarns {:.4g} µm "
-                                    "× {:.4g} µm",
-                                    system.name, 2 * system.yarn(index).half_height(), crossed.name,
-                                    a.half_width() + b.half_width(),
-                                    a.half_height() + b.half_height())};
+        const double needed = WrapPassage({&from.wrap->curve(), from.above},
+                                          {&to.wrap->curve(), to.above}, to.centre - from.centre)
+                                  .smallest_spacing();
+        if (needed > smallest) {
+            smallest = needed;
+            closest = k;
+        }
     }
-    return std::nullopt;
+    const SystemYarn &a = crossed.yarn(closest), &b = crossed.yarn(closest + 1);
+    return {smallest, crossed.spacing, crossed.sett_name.c_str(),
+            fmt::format("a {} yarn {:.4g} µm thick to pass between {} yarns {:.4g} µm × {:.4g} µm",
+                        system.name, 2 * system.yarn(index).half_height(), crossed.name,
+                        a.half_width() + b.half_width(), a.half_height() + b.half_height())};
 }
 
 /// The slopes of the yarns' axes over their crossings: [yarn][crossing].
@@ -112,18 +113,20 @@ std::optional<TooClose> lay_axes(YarnSystem& system, const YarnSystem& crossed, 
     system.axes.clear();
     for (size_t i = 0; i < heights.size(); ++i) {
         const auto crossings = crossings_at(system, i, crossed, wraps, heights[i], slopes[i]);
-        if (auto too_close = check_passages(crossings, system, i, crossed))
-            return too_close;
-        system.axes.emplace_back(crossings, crossed.spacing);
+        try {
+            system.axes.emplace_back(crossings, crossed.spacing);
+        } catch (const std::invalid_argument&) {
+            return too_close(crossings, system, i, crossed);
+        }
     }
     return std::nullopt;
 }
 
-/// The heights of ends [end][pick] and picks [pick][end] so much over the shared ones, from the
-/// middle of the yarns' outlines.
+/// The heights of ends [end][pick] and picks [pick][end] with `share` of the lift, from the middle
+/// of the yarns' outlines.
 std::pair<std::vector<std::vector<double>>, std::vector<std::vector<double>>>
-heights_of(const std::vector<double>& separation, const std::vector<double>& lift, double balance,
-           const YarnSystem& warp, const YarnSystem& weft) {
+heights_of(const std::vector<double>& separation, const std::vector<double>& lift, double share,
+           double balance, const YarnSystem& warp, const YarnSystem& weft) {
     const size_t ends = warp.above.size(), picks = weft.above.size();
     std::vector<std::vector<double>> of_ends(ends, std::vector<double>(picks)),
         of_picks(picks, std::vector<double>(ends));
@@ -131,8 +134,9 @@ heights_of(const std::vector<double>& separation, const std::vector<double>& lif
     for (size_t end = 0; end < ends; ++end)
         for (size_t pick = 0; pick < picks; ++pick) {
             const size_t crossing = end * picks + pick;
-            of_ends[end][pick] = balance * separation[crossing] + lift[crossing];
-            of_picks[pick][end] = (balance - 1) * separation[crossing] + lift[crossing];
+            const double lifted = share * lift[crossing];
+            of_ends[end][pick] = balance * separation[crossing] + lifted;
+            of_picks[pick][end] = (balance - 1) * separation[crossing] + lifted;
             for (const auto& [height, reach] :
                  {std::pair(of_ends[end][pick], warp.yarn(end).half_height()),
                   std::pair(of_picks[pick][end], weft.yarn(pick).half_height())}) {
@@ -168,12 +172,9 @@ std::optional<TooClose> settle_lifted(YarnSystem& warp, YarnSystem& weft, const 
             }
         if (change <= kSettled * greatest)
             break;
-        std::vector<double> part(ends * picks);
-        if (share > 0) {
+        if (share > 0)
             lift = crossing_lift(separation, int(ends), int(picks), balance, std::move(lift));
-            std::ranges::transform(lift, part.begin(), [&](double all) { return share * all; });
-        }
-        const auto [of_ends, of_picks] = heights_of(separation, part, balance, warp, weft);
+        const auto [of_ends, of_picks] = heights_of(separation, lift, share, balance, warp, weft);
         if (auto too_close = lay_axes(warp, weft, of_warp, of_ends, warp_slopes))
             return too_close;
         if (auto too_close = lay_axes(weft, warp, of_weft, of_picks, weft_slopes))
