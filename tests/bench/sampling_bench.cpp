@@ -1,4 +1,4 @@
-#include "renderer/core/rng.h"
+#include "renderer/core/math.h"
 #include "renderer/integrator/path_tracer.h"
 #include "renderer/scene/model_scene.h"
 #include "renderer/scene/scene_builder.h"
@@ -11,10 +11,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 // What sampling from the table buys over sampling from lobes that are fitted to it: lines of cloth,
-// sky, sampler, samples a pixel, seconds of processor time, and the mean and the variance of the
-// pixels' means, of a model under a sky, over the pixels that it fills: what is seen of the sky
-// itself is as noisy with either. Runs of the two samplers alternate, each with random numbers of
-// its own. charts/sampling.py draws them:
+// sky, sampler, samples a pixel, seconds of processor time, and the mean, the variance and the
+// relative variance of the pixels' means, of a model under a sky, over the pixels that it fills:
+// what is seen of the sky itself is as noisy with either. Runs of the two samplers alternate, each
+// with random numbers of its own. charts/sampling.py draws them:
 //
 //   build/tests/tests/sampling_bench scenes/garments/dress.glb TABLE.bsdf... SKY.exr... |
 //       python3 tests/bench/charts/sampling.py
@@ -61,26 +61,36 @@ Scene worn(const Scene& scene, const std::shared_ptr<const Bsdf>& material) {
     return {scene, std::move(surfaces), scene.lights()};
 }
 
-/// In the mean over channels and the pixels that are filled.
-Film::Noise noise_of_model(const Film& film) {
+struct Noise {
+    double mean = 0;     ///< of the pixels' means
+    double variance = 0; ///< of a pixel's mean
+    double relative = 0; ///< the same over the squared mean of the pixel, plus 0.01
+};
+
+/// In the mean over channels and the pixels that are filled, from what two pictures differ by:
+/// that knows what evenly spread samples gain.
+Noise noise_of_model(const Image& one, const Image& other) {
     constexpr float kFilled = 0.9f; // length of the mean of unit normals, 0 where there is sky
-    const Image image = film.image();
     const auto plane = [&](const std::string& name) -> const std::vector<float>& {
-        return *image.find(name);
+        return *one.find(name);
     };
-    Film::Noise noise;
+    Noise noise;
     size_t values = 0;
     for (size_t i = 0; i < plane("R").size(); ++i) {
         const glm::vec3 normal(plane("N.X")[i], plane("N.Y")[i], plane("N.Z")[i]);
         if (glm::length(normal) < kFilled)
             continue;
         for (const std::string channel : {"R", "G", "B"}) {
-            noise.mean += plane(channel)[i];
-            noise.variance += plane("variance." + channel)[i];
+            const double a = plane(channel)[i], b = (*other.find(channel))[i];
+            const double mean = 0.5 * (a + b), variance = 0.5 * square(a - b);
+            noise.mean += mean;
+            noise.variance += variance;
+            noise.relative += variance / (square(mean) + 0.01);
             ++values;
         }
     }
-    return {noise.mean / double(values), noise.variance / double(values)};
+    const auto count = double(values);
+    return {noise.mean / count, noise.variance / count, noise.relative / count};
 }
 
 void compare_samplers(const std::filesystem::path& model, const std::filesystem::path& cloth,
@@ -106,13 +116,17 @@ void compare_samplers(const std::filesystem::path& model, const std::filesystem:
                   {"lobes", by_lobes}}) {
                 Scene scene = worn(built, material);
                 scene.settings.samples = samples;
-                scene.settings.seed = ++seed;
+                const auto rendered = [&] {
+                    scene.settings.seed = ++seed;
+                    return render(scene).image();
+                };
                 const std::clock_t start = std::clock();
-                const Film film = render(scene);
-                const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
-                const Film::Noise noise = noise_of_model(film);
-                std::printf("%s,%s,%s,%d,%.4f,%.6g,%.6g\n", cloth.stem().c_str(),
-                            sky.stem().c_str(), name, samples, seconds, noise.mean, noise.variance);
+                const Image one = rendered(), other = rendered();
+                const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC / 2;
+                const Noise noise = noise_of_model(one, other);
+                std::printf("%s,%s,%s,%d,%.4f,%.6g,%.6g,%.6g\n", cloth.stem().c_str(),
+                            sky.stem().c_str(), name, samples, seconds, noise.mean, noise.variance,
+                            noise.relative);
                 std::fflush(stdout);
             }
 }
@@ -134,7 +148,7 @@ int main(int count, char** arguments) {
         }
         (file.extension() == ".exr" ? skies : tables).push_back(file);
     }
-    std::puts("cloth,sky,sampler,samples,seconds,mean,variance");
+    std::puts("cloth,sky,sampler,samples,seconds,mean,variance,relative");
     for (const auto& table : tables)
         for (const auto& sky : skies)
             rapport::compare_samplers(arguments[1], table, sky);
