@@ -64,8 +64,8 @@ struct Candidate {
 };
 
 Candidate light_candidate(const Scene::LightChoice& choice, int of, const SurfacePoint& point,
-                          const Frame& frame, const FoldedBsdf& bsdf, float chance,
-                          const glm::vec2& u) {
+                          const Rgb& reflectance, const Frame& frame, const FoldedBsdf& bsdf,
+                          float chance, const glm::vec2& u) {
     const auto light = choice.light->sample(point.position, u);
     if (!light)
         return {};
@@ -73,7 +73,7 @@ Candidate light_candidate(const Scene::LightChoice& choice, int of, const Surfac
     if (!sides_agree(point, light->direction, local))
         return {};
     const auto [scattered, pdf] = bsdf.eval_and_pdf(local);
-    const Rgb arriving = scattered * point.reflectance() * light->radiance;
+    const Rgb arriving = scattered * reflectance * light->radiance;
     if (light->delta)
         return {arriving / choice.probability, choice.light, light->direction, light->distance};
     const float density = choice.probability * light->pdf;
@@ -99,8 +99,9 @@ float shadow_length(const glm::vec3& origin, const SurfacePoint& point, const Ca
 /// The candidates are one point of every stratum of the lights' shares and a shifted lattice (R2)
 /// in the space of directions; each is as likely as if it were alone, which is all that is needed.
 /// Counts the ray that it traces among `rays`.
-Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& frame,
-                 const FoldedBsdf& bsdf, float chance, Sampler& sampler, uint32_t& rays) {
+Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Rgb& reflectance,
+                 const Frame& frame, const FoldedBsdf& bsdf, float chance, Sampler& sampler,
+                 uint32_t& rays) {
     const auto first = scene.choose_light(0);
     if (!first)
         return Rgb(0);
@@ -116,8 +117,8 @@ Rgb direct_light(const Scene& scene, const SurfacePoint& point, const Frame& fra
         const auto number = static_cast<float>(i);
         const auto choice =
             scene.choose_light((number + place_in_stratum) / static_cast<float>(count));
-        const Candidate candidate = light_candidate(*choice, count, point, frame, bsdf, chance,
-                                                    glm::fract(shift + number * step));
+        const Candidate candidate = light_candidate(*choice, count, point, reflectance, frame, bsdf,
+                                                    chance, glm::fract(shift + number * step));
         const float weight = mean(candidate.added);
         if (!std::isfinite(weight)) // to be seen, not to be picked or not
             return candidate.added;
@@ -181,8 +182,6 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, std::optional<Surface
         if (vertices)
             vertices->push_back({*point, throughput});
         const bool first = depth == 0 && layers == 0;
-        if (first)
-            path.first = point;
         path.radiance += throughput * emitted_radiance(scene, *point, ray.dir, last);
 
         if (const auto& fibres = point->surface->fibres) {
@@ -210,18 +209,19 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, std::optional<Surface
         const Frame frame = point->frame_towards(-ray.dir);
         const glm::vec3 eye = frame.to_local(-ray.dir);
         const Bsdf& material = *point->surface->material;
+        const Rgb reflectance = point->reflectance();
         const bool scatters = depth < scene.settings.max_depth;
         const auto [unscattered, albedo] = material.shares(eye);
         const float through = mean(unscattered);
         if (first)
-            path.albedo = albedo * point->reflectance();
+            path.albedo = albedo * reflectance;
         if (!scatters) // even if the unscattered light goes on
-            path.cut += mean(throughput * albedo * point->reflectance());
+            path.cut += mean(throughput * albedo * reflectance);
         const float pass = chance_to_pass(through, scatters ? mean(albedo) : 0);
         const FoldedBsdf bsdf(material, eye, frame.to_local(point->geometric_normal));
         if (scatters && pass < 1)
-            path.radiance +=
-                throughput * direct_light(scene, *point, frame, bsdf, 1 - pass, sampler, path.rays);
+            path.radiance += throughput * direct_light(scene, *point, reflectance, frame, bsdf,
+                                                       1 - pass, sampler, path.rays);
         if (pass > 0 && sampler.next_1d() < pass) {
             throughput *= unscattered / pass;
             ray = {offset_origin(*point, ray.dir), ray.dir};
@@ -240,7 +240,7 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, std::optional<Surface
         const glm::vec3 direction = glm::normalize(frame.to_world(sample->light));
         if (!sides_agree(*point, direction, sample->light))
             break;
-        throughput *= sample->weight * point->reflectance();
+        throughput *= sample->weight * reflectance;
         if (throughput == Rgb(0) || (depth > kRouletteDepth && !survives(throughput, sampler)))
             break;
         last = Scattering{point->position, sample->pdf * (1 - pass)};

@@ -10,8 +10,7 @@ namespace rapport {
 
 struct PathResult {
     Rgb radiance{0};
-    std::optional<SurfacePoint> first; ///< what the camera ray met, whether or not it scattered
-    Rgb albedo{0};                     ///< of that; of explicit fibres, what this path saw of them
+    Rgb albedo{0}; ///< of the first vertex; of explicit fibres, what this path saw of them
     /// What the path would have scattered on where `max_depth` ended it: its weight times the
     /// albedo there, in the mean over the channels; of explicit fibres the weight alone.
     float cut = 0;

@@ -65,11 +65,9 @@ FilmSample take_sample(const Scene& scene, const CameraRays& rays, int width, Ca
                         sample.x, sample.y, sample.number, told(path.radiance),
                         path_told(scene, camera_sample(scene, rays, width, sample.x, sample.y,
                                                        sample.number))));
-    if (!path.first)
+    if (!met)
         return {path.radiance};
-    const SurfacePoint& point = *path.first;
-    return {path.radiance, true,          path.albedo,
-            point.frame.z, point.frame.y, rays.depth(point.position),
+    return {path.radiance, true, path.albedo, met->frame.z, met->frame.y, rays.depth(met->position),
             path.cut};
 }
 

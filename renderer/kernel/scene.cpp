@@ -9,16 +9,15 @@
 namespace rapport::kernel {
 namespace {
 
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+/// Not if it is not a number.
+bool within(float bound, const glm::vec3& v) {
+    return std::abs(v.x) <= bound && std::abs(v.y) <= bound && std::abs(v.z) <= bound;
 }
 
 /// What Embree may be asked: it aborts the process on NaN, on far origins and on negative tnear.
 bool usable(const Ray& ray) {
-    constexpr float kFarthest = 1e18f;
-    return finite(ray.org) && finite(ray.dir) && !std::isnan(ray.tnear) &&
-           std::max(ray.tnear, 0.0f) <= ray.tfar &&
-           !glm::any(glm::greaterThan(glm::abs(ray.org), glm::vec3(kFarthest)));
+    return within(1e18f, ray.org) && within(std::numeric_limits<float>::max(), ray.dir) &&
+           !std::isnan(ray.tnear) && std::max(ray.tnear, 0.0f) <= ray.tfar;
 }
 
 } // namespace

@@ -10,8 +10,8 @@ namespace rapport {
 namespace {
 
 template <class T>
-T interpolate(const std::vector<T>& values, const glm::uvec3& t, const kernel::Hit& hit) {
-    return (1 - hit.u - hit.v) * values[t.x] + hit.u * values[t.y] + hit.v * values[t.z];
+T interpolate(const std::vector<T>& values, const glm::uvec3& t, const glm::vec2& b) {
+    return (1 - b.x - b.y) * values[t.x] + b.x * values[t.y] + b.y * values[t.z];
 }
 
 } // namespace
@@ -77,13 +77,13 @@ Frame Scene::shading_frame(const Surface& surface, const kernel::Hit& hit) const
     const glm::uvec3 t = mesh.triangles[hit.primitive];
     glm::vec3 z = hit.geometric_normal;
     if (!mesh.normals.empty()) {
-        const glm::vec3 normal = interpolate(mesh.normals, t, hit);
+        const glm::vec3 normal = interpolate(mesh.normals, t, {hit.u, hit.v});
         if (const float length = glm::length(normal); length > 0)
             z = normal / length;
     }
     glm::vec3 warp(0);
     if (!mesh.warp.empty())
-        warp = interpolate(mesh.warp, t, hit);
+        warp = interpolate(mesh.warp, t, {hit.u, hit.v});
     else if (!mesh.uvs.empty())
         warp = triangle_warp(mesh, hit.primitive);
     const glm::vec3 y = warp - glm::dot(warp, z) * z;
@@ -123,12 +123,18 @@ std::optional<SurfacePoint> Scene::surface_point(const std::optional<kernel::Hit
     point.position = (1 - hit->u - hit->v) * a + hit->u * b + hit->v * c;
     point.geometric_normal = hit->geometric_normal;
     point.frame = shading_frame(surface, *hit);
-    point.uv = mesh.uvs.empty() ? glm::vec2(0) : interpolate(mesh.uvs, t, *hit);
     point.surface = &surface;
     point.triangle = hit->primitive;
+    point.barycentric = {hit->u, hit->v};
     point.distance = hit->t;
     point.reach = std::max({largest_coordinate(a), largest_coordinate(b), largest_coordinate(c)});
     return point;
+}
+
+glm::vec2 SurfacePoint::uv() const {
+    const TriangleMesh& mesh = *surface->mesh;
+    return mesh.uvs.empty() ? glm::vec2(0)
+                            : interpolate(mesh.uvs, mesh.triangles[triangle], barycentric);
 }
 
 Frame SurfacePoint::frame_towards(const glm::vec3& eye) const {

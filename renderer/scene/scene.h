@@ -42,17 +42,20 @@ struct SurfacePoint {
     /// to a sheared cloth measured anew (tests/bench/charts/shear.svg). Where the UVs do not tell,
     /// any frame about z.
     Frame frame;
-    glm::vec2 uv; ///< 0 without UVs
     const Surface* surface;
     uint32_t triangle;
-    float distance; ///< along the ray, whose direction is of unit length
-    float reach;    ///< largest coordinate of the triangle: the scale of the rounding errors
+    glm::vec2 barycentric; ///< weights of its 2nd and 3rd vertex
+    float distance;        ///< along the ray, whose direction is of unit length
+    float reach;           ///< largest coordinate of the triangle: the scale of the rounding errors
 
     /// The shading frame, or, where the eye sees by the geometry one side and by the shading normal
     /// the other, as on silhouettes, the frame of the geometric normal.
     Frame frame_towards(const glm::vec3& eye) const;
     /// What the surface's picture multiplies scattered light by.
-    Rgb reflectance() const { return surface->reflectance ? (*surface->reflectance)(uv) : Rgb(1); }
+    Rgb reflectance() const {
+        return surface->reflectance ? (*surface->reflectance)(uv()) : Rgb(1);
+    }
+    glm::vec2 uv() const; ///< 0 without UVs
 };
 
 /// A scene, constant after construction.
