@@ -209,15 +209,17 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, std::optional<Surface
         const Frame frame = point->frame_towards(-ray.dir);
         const glm::vec3 eye = frame.to_local(-ray.dir);
         const Bsdf& material = *point->surface->material;
-        const Rgb reflectance = point->reflectance();
+        const float opacity = point->opacity();
+        const Rgb reflectance = opacity * point->reflectance();
         const bool scatters = depth < scene.settings.max_depth;
-        const auto [unscattered, albedo] = material.shares(eye);
+        const auto [let_through, albedo] = material.shares(eye);
+        const Rgb unscattered = 1 - opacity + opacity * let_through;
         const float through = mean(unscattered);
         if (first)
             path.albedo = albedo * reflectance;
         if (!scatters) // even if the unscattered light goes on
             path.cut += mean(throughput * albedo * reflectance);
-        const float pass = chance_to_pass(through, scatters ? mean(albedo) : 0);
+        const float pass = chance_to_pass(through, scatters ? opacity * mean(albedo) : 0);
         const FoldedBsdf bsdf(material, eye, frame.to_local(point->geometric_normal));
         if (scatters && pass < 1)
             path.radiance += throughput * direct_light(scene, *point, reflectance, frame, bsdf,

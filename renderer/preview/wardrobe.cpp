@@ -74,7 +74,7 @@ Scene dressed(const Scene& scene, const ClothChoices& choices, const LightSettin
         if (!made)
             made = cloth(name, choice->second, load_table);
         surface.material = made;
-        surface.reflectance = nullptr;
+        surface.print = {};
     }
     std::vector<std::shared_ptr<Light>> lights;
     const auto add = [&](const std::shared_ptr<Light>& light, float scale, float rotation) {

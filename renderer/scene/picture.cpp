@@ -41,7 +41,7 @@ Picture::Picture(std::span<const unsigned char> file, const std::string& name) {
     stbi_uc* decoded = nullptr;
     if (file.size() <= static_cast<size_t>(std::numeric_limits<int>::max()))
         decoded = stbi_load_from_memory(file.data(), static_cast<int>(file.size()), &size_.x,
-                                        &size_.y, &channels, 3);
+                                        &size_.y, &channels, 4);
     if (!decoded) {
         const char* reason = stbi_failure_reason();
         throw FileError(name, "", "a picture (PNG, JPEG, TGA or BMP)",
@@ -50,21 +50,28 @@ Picture::Picture(std::span<const unsigned char> file, const std::string& name) {
     const std::unique_ptr<stbi_uc, void (*)(void*)> keeper(decoded, stbi_image_free);
     pixels_.reserve(static_cast<size_t>(size_.x) * size_.y);
     for (size_t i = 0; i < static_cast<size_t>(size_.x) * size_.y; ++i)
-        pixels_.emplace_back(decoded[3 * i], decoded[3 * i + 1], decoded[3 * i + 2]);
+        pixels_.emplace_back(decoded[4 * i], decoded[4 * i + 1], decoded[4 * i + 2],
+                             decoded[4 * i + 3]);
 }
 
 Rgb Picture::pixel(int x, int y, bool linear) const {
     static const std::array<float, 256> kDecoded[] = {decoding(false), decoding(true)};
-    const glm::u8vec3 value = pixels_[static_cast<size_t>(y) * size_.x + x];
+    const glm::u8vec4 value = pixels_[static_cast<size_t>(y) * size_.x + x];
     const auto& table = kDecoded[linear];
     return {table[value.r], table[value.g], table[value.b]};
+}
+
+float Picture::alpha(int x, int y) const {
+    return static_cast<float>(pixels_[static_cast<size_t>(y) * size_.x + x].a) / 255;
 }
 
 PictureTexture::PictureTexture(std::shared_ptr<const Picture> picture,
                                const PictureMapping& mapping, const Rgb& factor)
     : picture_(std::move(picture)), mapping_(mapping), factor_(factor) {}
 
-Rgb PictureTexture::operator()(const glm::vec2& uv) const {
+/// Of a function of the pixels, 0 where there are none.
+template <class OfPixel>
+auto PictureTexture::bilinear(const glm::vec2& uv, const OfPixel& of_pixel) const {
     constexpr double kFarthest = 1 << 30; // pixels whose numbers still fit an int
     const glm::dvec2 mapped =
         glm::dvec2(mapping_.scale) * glm::dvec2(uv) + glm::dvec2(mapping_.offset);
@@ -73,15 +80,24 @@ Rgb PictureTexture::operator()(const glm::vec2& uv) const {
         glm::clamp(glm::dvec2(mapped.x, 1 - mapped.y) * size - 0.5, -kFarthest, kFarthest);
     const glm::dvec2 floor = glm::floor(place);
     const glm::vec2 f(place - floor);
-    const int x = static_cast<int>(floor.x), y = static_cast<int>(floor.y);
-    return factor_ * glm::mix(glm::mix(pixel(x, y), pixel(x + 1, y), f.x),
-                              glm::mix(pixel(x, y + 1), pixel(x + 1, y + 1), f.x), f.y);
+    const auto at = [&](int right, int down) {
+        const int x =
+            wrapped(static_cast<int>(floor.x) + right, picture_->size().x, mapping_.wrap_u);
+        const int y =
+            wrapped(static_cast<int>(floor.y) + down, picture_->size().y, mapping_.wrap_v);
+        using Value = decltype(of_pixel(x, y));
+        return x < 0 || y < 0 ? Value(0) : of_pixel(x, y);
+    };
+    return glm::mix(glm::mix(at(0, 0), at(1, 0), f.x), glm::mix(at(0, 1), at(1, 1), f.x), f.y);
 }
 
-Rgb PictureTexture::pixel(int x, int y) const {
-    x = wrapped(x, picture_->size().x, mapping_.wrap_u);
-    y = wrapped(y, picture_->size().y, mapping_.wrap_v);
-    return x < 0 || y < 0 ? Rgb(0) : picture_->pixel(x, y, mapping_.linear);
+Rgb PictureTexture::operator()(const glm::vec2& uv) const {
+    return factor_ *
+           bilinear(uv, [&](int x, int y) { return picture_->pixel(x, y, mapping_.linear); });
+}
+
+float PictureTexture::alpha(const glm::vec2& uv) const {
+    return bilinear(uv, [&](int x, int y) { return picture_->alpha(x, y); });
 }
 
 } // namespace rapport

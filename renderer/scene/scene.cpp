@@ -100,7 +100,7 @@ Frame Scene::shading_frame(const Surface& surface, const kernel::Hit& hit) const
 }
 
 std::optional<SurfacePoint> Scene::intersect(const kernel::Ray& ray) const {
-    return surface_point(kernel_->intersect(ray));
+    return past_holes(ray, kernel_->intersect(ray));
 }
 
 kernel::Packet<std::optional<SurfacePoint>>
@@ -108,33 +108,79 @@ Scene::intersect(std::span<const kernel::Ray> rays) const {
     const kernel::Packet<std::optional<kernel::Hit>> hits = kernel_->intersect(rays);
     kernel::Packet<std::optional<SurfacePoint>> points;
     for (size_t i = 0; i < rays.size(); ++i)
-        points[i] = surface_point(hits[i]);
+        points[i] = past_holes(rays[i], hits[i]);
     return points;
 }
 
-std::optional<SurfacePoint> Scene::surface_point(const std::optional<kernel::Hit>& hit) const {
+/// What a ray meets that met `hit` first.
+std::optional<SurfacePoint> Scene::past_holes(const kernel::Ray& ray,
+                                              const std::optional<kernel::Hit>& hit) const {
     if (!hit)
         return std::nullopt;
-    const Surface& surface = surfaces_[hit->geometry];
+    SurfacePoint point = surface_point(*hit);
+    kernel::Ray rest = ray;
+    float gone = 0;
+    for (int layer = 0; layer < kMaxLayers && point.opacity() == 0; ++layer) {
+        const glm::vec3 origin = offset_origin(point, ray.dir);
+        const float step = glm::dot(origin - rest.org, ray.dir);
+        rest = {origin, ray.dir, 0, rest.tfar - step};
+        gone += step;
+        const auto next = kernel_->intersect(rest);
+        if (!next)
+            return std::nullopt;
+        point = surface_point(*next);
+        point.distance += gone;
+    }
+    return point;
+}
+
+SurfacePoint Scene::surface_point(const kernel::Hit& hit) const {
+    const Surface& surface = surfaces_[hit.geometry];
     const TriangleMesh& mesh = *surface.mesh;
-    const glm::uvec3 t = mesh.triangles[hit->primitive];
+    const glm::uvec3 t = mesh.triangles[hit.primitive];
     const glm::vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
     SurfacePoint point;
-    point.position = (1 - hit->u - hit->v) * a + hit->u * b + hit->v * c;
-    point.geometric_normal = hit->geometric_normal;
-    point.frame = shading_frame(surface, *hit);
+    point.position = (1 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
+    point.geometric_normal = hit.geometric_normal;
+    point.frame = shading_frame(surface, hit);
     point.surface = &surface;
-    point.triangle = hit->primitive;
-    point.barycentric = {hit->u, hit->v};
-    point.distance = hit->t;
+    point.triangle = hit.primitive;
+    point.barycentric = {hit.u, hit.v};
+    point.distance = hit.t;
     point.reach = std::max({largest_coordinate(a), largest_coordinate(b), largest_coordinate(c)});
     return point;
 }
 
-glm::vec2 SurfacePoint::uv() const {
-    const TriangleMesh& mesh = *surface->mesh;
-    return mesh.uvs.empty() ? glm::vec2(0)
-                            : interpolate(mesh.uvs, mesh.triangles[triangle], barycentric);
+namespace {
+
+template <class T> T at(const SurfacePoint& point, const std::vector<T>& values) {
+    return interpolate(values, point.surface->mesh->triangles[point.triangle], point.barycentric);
+}
+
+} // namespace
+
+Rgb SurfacePoint::reflectance() const {
+    const Print& print = surface->print;
+    Rgb share(1);
+    if (print.picture)
+        share = (*print.picture)(at(*this, surface->mesh->uvs));
+    if (print.vertex_colors)
+        share *= Rgb(at(*this, surface->mesh->colors));
+    return share;
+}
+
+float SurfacePoint::opacity() const {
+    const Print& print = surface->print;
+    if (!print.opacity)
+        return 1;
+    float share = print.opacity->factor;
+    if (print.picture)
+        share *= print.picture->alpha(at(*this, surface->mesh->uvs));
+    if (print.vertex_colors)
+        share *= at(*this, surface->mesh->colors).a;
+    if (print.opacity->cutoff)
+        return share >= *print.opacity->cutoff ? 1 : 0;
+    return share;
 }
 
 Frame SurfacePoint::frame_towards(const glm::vec3& eye) const {
@@ -171,8 +217,10 @@ Rgb Scene::transmittance(const glm::vec3& from, const glm::vec3& direction, floa
             ray.tfar = distance - glm::dot(ray.org - from, direction);
             continue;
         }
-        passed *= point->surface->material->unscattered(
-            point->frame_towards(-direction).to_local(-direction));
+        const float opacity = point->opacity();
+        passed *= 1 - opacity +
+                  opacity * point->surface->material->unscattered(
+                                point->frame_towards(-direction).to_local(-direction));
         if (passed == Rgb(0))
             return passed;
         ray.org = offset_origin(*point, direction);

@@ -18,6 +18,13 @@
 
 namespace rapport {
 
+/// What lies on a surface from place to place, whatever its material.
+struct Print {
+    std::shared_ptr<const PictureTexture> picture; ///< multiplies what is scattered, if any
+    bool vertex_colors = false;                    ///< as do the mesh's, if so
+    std::optional<Opacity> opacity = std::nullopt; ///< or all of the surface is there
+};
+
 /// One mesh with its material and, if it shines, its emission.
 struct Surface {
     std::shared_ptr<const TriangleMesh> mesh; ///< its triangles and normals agree on the face side
@@ -25,9 +32,9 @@ struct Surface {
     /// What the material was made from, under the name that the surface's own file gives it; for
     /// those who dress the surface anew. May be absent.
     std::shared_ptr<const MaterialDescription> description;
-    std::shared_ptr<const PictureTexture> reflectance; ///< multiplies what is scattered, if any
-    Rgb emission{0};                                   ///< radiance of the face side
-    bool two_sided_emission = false;                   ///< of the other side too
+    Print print{};
+    Rgb emission{0};                             ///< radiance of the face side
+    bool two_sided_emission = false;             ///< of the other side too
     std::shared_ptr<const AreaLight> area_light; ///< set by Scene's constructor where it shines
     /// What the mesh is only the box of; the material then tells of nothing but the albedo.
     std::optional<PlacedFibres> fibres = std::nullopt;
@@ -51,11 +58,8 @@ struct SurfacePoint {
     /// The shading frame, or, where the eye sees by the geometry one side and by the shading normal
     /// the other, as on silhouettes, the frame of the geometric normal.
     Frame frame_towards(const glm::vec3& eye) const;
-    /// What the surface's picture multiplies scattered light by.
-    Rgb reflectance() const {
-        return surface->reflectance ? (*surface->reflectance)(uv()) : Rgb(1);
-    }
-    glm::vec2 uv() const; ///< 0 without UVs
+    Rgb reflectance() const; ///< what the surface's print multiplies scattered light by
+    float opacity() const;   ///< how much of the surface is there: 1 but for its print
 };
 
 /// A scene, constant after construction.
@@ -68,6 +72,7 @@ class Scene {
     Scene(const Scene& scene, std::vector<Surface> surfaces,
           std::vector<std::shared_ptr<Light>> lights);
 
+    /// What a ray meets, holes in a surface (of opacity 0) left out.
     std::optional<SurfacePoint> intersect(const kernel::Ray& ray) const;
     /// The same of rays that lie close together; at most a packet of them.
     kernel::Packet<std::optional<SurfacePoint>> intersect(std::span<const kernel::Ray> rays) const;
@@ -101,7 +106,9 @@ class Scene {
 
   private:
     void light_up();
-    std::optional<SurfacePoint> surface_point(const std::optional<kernel::Hit>& hit) const;
+    SurfacePoint surface_point(const kernel::Hit& hit) const;
+    std::optional<SurfacePoint> past_holes(const kernel::Ray& ray,
+                                           const std::optional<kernel::Hit>& hit) const;
     Frame shading_frame(const Surface& surface, const kernel::Hit& hit) const;
 
     std::vector<Surface> surfaces_;

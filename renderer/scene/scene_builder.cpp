@@ -135,8 +135,8 @@ class Builder {
                 reverse_orientation(part.mesh);
             orient_by_normals(part.mesh);
             surface.material = material ? bsdf(material) : bsdf(part.base_color);
-            surface.reflectance =
-                material ? texture(material->reflectance) : texture(part.base_color);
+            surface.print = material ? Print{texture(material->reflectance)}
+                                     : print(part.base_color, part.mesh, shape);
             surface.description =
                 described(material ? *material : MaterialDescription{}, part.material);
             surface.mesh = std::make_shared<const TriangleMesh>(std::move(part.mesh));
@@ -283,6 +283,12 @@ class Builder {
                 return make_imagemap(description->params, description->base_dir);
             });
         return made;
+    }
+
+    /// A light shines from all of its surface, hence none of it is missing.
+    Print print(const BaseColor& color, const TriangleMesh& mesh, const ShapeDescription& shape) {
+        return {texture(color), !mesh.colors.empty(),
+                shape.area_light ? std::nullopt : color.opacity};
     }
 
     std::shared_ptr<const PictureTexture> texture(const BaseColor& color) {

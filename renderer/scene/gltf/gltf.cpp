@@ -95,6 +95,8 @@ class ModelReader {
             if (const int material = mesh.primitives[p].material; material >= 0) {
                 part.material = file_.materials[static_cast<size_t>(material)].name;
                 part.base_color = color_of(material);
+            } else if (!part.mesh.colors.empty()) {
+                part.base_color.factor = Rgb(1);
             }
             model_.parts.push_back(std::move(part));
         }
@@ -162,37 +164,31 @@ class ModelReader {
             n = length > 0 && std::isfinite(length) ? glm::vec3(normal / length) : glm::vec3(0);
         }
         if (turned)
-            for (auto* index : {&mesh.position_index, &mesh.uv_index, &mesh.normal_index})
+            for (auto* index :
+                 {&mesh.position_index, &mesh.uv_index, &mesh.normal_index, &mesh.color_index})
                 for (glm::uvec3& triangle : *index)
                     std::swap(triangle.y, triangle.z);
         return mesh;
     }
 
-    /// What would change the base colour where the scene states no material.
+    /// What would be seen of the parts where the scene states no material.
     void tell_ignored() {
         std::set<int> meshes, materials;
         for (const int node : nodes_.in_order())
             meshes.insert(file_.nodes[static_cast<size_t>(node)].mesh);
         meshes.erase(-1);
-        size_t coloured = 0, shining = 0, transparent = 0;
         for (const int mesh : meshes)
             for (const tinygltf::Primitive& primitive :
-                 file_.meshes[static_cast<size_t>(mesh)].primitives) {
-                coloured += primitive.attributes.contains("COLOR_0");
+                 file_.meshes[static_cast<size_t>(mesh)].primitives)
                 materials.insert(primitive.material);
-            }
         materials.erase(-1);
-        for (const int index : materials) {
-            const tinygltf::Material& material = file_.materials[static_cast<size_t>(index)];
-            shining += std::ranges::any_of(material.emissiveFactor, [](double c) { return c > 0; });
-            transparent += material.alphaMode != "OPAQUE";
-        }
-        for (const auto& [count, what] :
-             {std::pair{coloured, "primitives with vertex colours (COLOR_0), which are ignored"},
-              {shining, "materials with emission, which is ignored"},
-              {transparent, "materials with transparency (alphaMode), which is ignored"}})
-            if (count > 0)
-                model_.warnings.push_back(fmt::format("{} {}", count, what));
+        const auto shining = std::ranges::count_if(materials, [&](int index) {
+            return std::ranges::any_of(file_.materials[static_cast<size_t>(index)].emissiveFactor,
+                                       [](double c) { return c > 0; });
+        });
+        if (shining > 0)
+            model_.warnings.push_back(
+                fmt::format("{} materials with emission, which is ignored", shining));
     }
 
     void warn(const std::string& place, const std::string& text) {

@@ -80,6 +80,25 @@ const Entry& entry(const std::vector<Entry>& section, int index, const std::stri
     return section[static_cast<size_t>(index)];
 }
 
+/// Nothing of a material that is opaque whatever its alpha.
+std::optional<Opacity> opacity_of(const tinygltf::Material& material, const std::string& path,
+                                  const std::string& place) {
+    const std::string& mode = material.alphaMode;
+    if (mode == "OPAQUE")
+        return std::nullopt;
+    if (mode != "MASK" && mode != "BLEND")
+        throw FileError(path, place + ".alphaMode", "OPAQUE, MASK or BLEND",
+                        fmt::format("\"{}\"", mode));
+    Opacity opacity{static_cast<float>(material.pbrMetallicRoughness.baseColorFactor[3])};
+    if (mode == "MASK") {
+        if (!(material.alphaCutoff >= 0))
+            throw FileError(path, place + ".alphaCutoff", "a number that is not negative",
+                            fmt::format("{}", material.alphaCutoff));
+        opacity.cutoff = static_cast<float>(material.alphaCutoff);
+    }
+    return opacity;
+}
+
 } // namespace
 
 glm::vec2 TextureTransform::operator()(const glm::vec2& uv) const {
@@ -124,13 +143,14 @@ BaseColor gltf_base_color(const tinygltf::Model& file, const GltfAccessors& acce
         file.materials[static_cast<size_t>(material)].pbrMetallicRoughness;
     const std::string place = fmt::format("materials[{}].pbrMetallicRoughness", material);
     BaseColor color;
-    for (int c = 0; c < 3; ++c) {
-        const double value = source.baseColorFactor[static_cast<size_t>(c)];
+    for (const double value : source.baseColorFactor)
         if (!(value >= 0 && value <= 1))
             throw FileError(path, place + ".baseColorFactor", "numbers in [0, 1]",
                             fmt::format("{}", value));
-        color.factor[c] = static_cast<float>(value);
-    }
+    for (int c = 0; c < 3; ++c)
+        color.factor[c] = static_cast<float>(source.baseColorFactor[static_cast<size_t>(c)]);
+    color.opacity = opacity_of(file.materials[static_cast<size_t>(material)], path,
+                               fmt::format("materials[{}]", material));
     if (source.baseColorTexture.index < 0)
         return color;
     const tinygltf::Texture& texture = entry(file.textures, source.baseColorTexture.index,

@@ -27,8 +27,8 @@ struct GltfUvs {
 GltfUvs gltf_uvs(const tinygltf::Model& file, const tinygltf::Primitive& primitive,
                  const std::string& path);
 
-/// Base colour of a material, `file.materials[material]`. A texture whose picture is missing or in
-/// a form that is not read is left out, told in `warnings`.
+/// Base colour and opacity of a material, `file.materials[material]`. A texture whose picture is
+/// missing or in a form that is not read is left out, told in `warnings`.
 BaseColor gltf_base_color(const tinygltf::Model& file, const GltfAccessors& accessors, int material,
                           const std::string& path, std::vector<std::string>& warnings);
 

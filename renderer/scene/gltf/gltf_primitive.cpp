@@ -49,6 +49,7 @@ class PrimitiveReader {
             add_morph_targets("NORMAL", mesh.normals);
         }
         read_uvs(mesh);
+        read_colors(mesh);
         if (tangents_ && !mesh.uvs.empty() && !mesh.normals.empty())
             read_warps(mesh);
         if (pose_.joints) {
@@ -115,6 +116,37 @@ class PrimitiveReader {
         mesh.uv_index = mesh.position_index;
     }
 
+    /// COLOR_0, where it is not white throughout.
+    void read_colors(IndexedMesh& mesh) const {
+        const int accessor = accessor_of("COLOR_0");
+        if (accessor < 0)
+            return;
+        const std::string place = attribute_place("COLOR_0");
+        mesh.colors = colors(accessor, place, 1);
+        check_count(place, mesh.colors.size());
+        add_morph_targets("COLOR_0", mesh.colors);
+        bool white = true;
+        for (glm::vec4& color : mesh.colors) {
+            color = glm::clamp(color, 0.0f, 1.0f);
+            white = white && color == glm::vec4(1);
+        }
+        if (white)
+            mesh.colors.clear();
+        else
+            mesh.color_index = mesh.position_index;
+    }
+
+    /// Colours with `alpha` where they have none of their own.
+    std::vector<glm::vec4> colors(int accessor, const std::string& place, float alpha) const {
+        if (static_cast<size_t>(accessor) < model_.accessors.size() &&
+            model_.accessors[static_cast<size_t>(accessor)].type == TINYGLTF_TYPE_VEC4)
+            return accessors_.vec4s(accessor, place);
+        std::vector<glm::vec4> result;
+        for (const glm::vec3& color : accessors_.vec3s(accessor, place))
+            result.emplace_back(color, alpha);
+        return result;
+    }
+
     /// The warp lies along the bitangent, the sign of which says on which side of the tangent it
     /// is; that is +v, upwards in the texture.
     void read_warps(IndexedMesh& mesh) const {
@@ -147,6 +179,8 @@ class PrimitiveReader {
             std::vector<Value> displacements;
             if constexpr (Value::length() == 2)
                 displacements = accessors_.vec2s(found->second, place);
+            else if constexpr (Value::length() == 4)
+                displacements = colors(found->second, place, 0);
             else
                 displacements = accessors_.vec3s(found->second, place);
             check_count(place, displacements.size());

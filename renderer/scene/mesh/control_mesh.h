@@ -48,8 +48,12 @@ struct ControlMesh {
     glm::dvec3 position(uint32_t side) const {
         return mesh.positions[mesh.position_index[side / 3][static_cast<int>(side % 3)]];
     }
-    uint32_t uv(uint32_t side) const {
-        return mesh.uv_index.empty() ? 0 : mesh.uv_index[side / 3][static_cast<int>(side % 3)];
+    uint32_t uv(uint32_t side) const { return number(mesh.uv_index, side); }
+    uint32_t color(uint32_t side) const { return number(mesh.color_index, side); }
+
+  private:
+    static uint32_t number(const std::vector<glm::uvec3>& index, uint32_t side) {
+        return index.empty() ? 0 : index[side / 3][static_cast<int>(side % 3)];
     }
 };
 

@@ -17,11 +17,12 @@ struct TriangleMesh {
     /// ∂P/∂u and ∂P/∂v of the surface, not orthogonalised; with an IndexedMesh's `warps`, unit
     /// vectors.
     std::vector<glm::vec3> weft, warp;
+    std::vector<glm::vec4> colors;     ///< linear RGB and alpha, in [0, 1]
     std::vector<glm::uvec3> triangles; ///< counter-clockwise seen from the face side
 };
 
-/// A mesh as a file holds it: corners index positions, UVs and normals apart, so that a UV seam
-/// does not cut the surface. Indices are valid and coordinates finite.
+/// A mesh as a file holds it: corners index positions, UVs, normals and colours apart, so that a UV
+/// seam does not cut the surface. Indices are valid and coordinates finite.
 struct IndexedMesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec2> uvs; ///< v upwards
@@ -29,9 +30,11 @@ struct IndexedMesh {
     /// any length.
     std::vector<glm::vec3> warps;
     std::vector<glm::vec3> normals;
+    std::vector<glm::vec4> colors;          ///< linear RGB and alpha, in [0, 1]
     std::vector<glm::uvec3> position_index; ///< per triangle
     std::vector<glm::uvec3> uv_index;       ///< per triangle; empty when there are no UVs
     std::vector<glm::uvec3> normal_index;   ///< per triangle; empty when there are no normals
+    std::vector<glm::uvec3> color_index;    ///< per triangle; empty when there are no colours
 };
 
 } // namespace rapport

@@ -115,20 +115,22 @@ size_t count_merged(const std::vector<glm::uvec3>& before, const IndexedMesh& af
     for (const glm::uvec3& t : before)
         count = std::max({count, t.x + 1, t.y + 1, t.z + 1});
     std::vector<char> met(count, 0);
-    std::vector<glm::uvec3> vertices; // by position, UV, normal
+    std::vector<glm::uvec4> vertices; // by position, UV, normal, colour
     FlatIndex known(count);
     size_t merged = 0;
     for (size_t t = 0; t < before.size(); ++t)
         for (int c = 0; c < 3; ++c) {
             if (std::exchange(met[before[t][c]], 1))
                 continue;
-            const glm::uvec3 vertex(after.position_index[t][c],
-                                    after.uv_index.empty() ? 0 : after.uv_index[t][c],
-                                    after.normal_index.empty() ? 0 : after.normal_index[t][c]);
+            const auto number = [&](const std::vector<glm::uvec3>& index) {
+                return index.empty() ? 0 : index[t][c];
+            };
+            const glm::uvec4 vertex(number(after.position_index), number(after.uv_index),
+                                    number(after.normal_index), number(after.color_index));
             const auto next = static_cast<uint32_t>(vertices.size());
-            if (known.find_or_add(mix(mix(mix(0, vertex.x), vertex.y), vertex.z), next,
-                                  [&](uint32_t other) { return vertices[other] == vertex; }) ==
-                next)
+            if (known.find_or_add(
+                    mix(mix(mix(mix(0, vertex.x), vertex.y), vertex.z), vertex.w), next,
+                    [&](uint32_t other) { return vertices[other] == vertex; }) == next)
                 vertices.push_back(vertex);
             else
                 ++merged;
@@ -146,13 +148,15 @@ bool is_collinear(const IndexedMesh& mesh, const glm::uvec3& t) {
 
 CleanMesh::CleanMesh(IndexedMesh mesh) : IndexedMesh(std::move(mesh)) {
     const std::vector<glm::uvec3> before = position_index;
-    parallel_for(3, [&](size_t kind) {
+    parallel_for(4, [&](size_t kind) {
         if (kind == 0)
             merge_equal(position_index, positions);
         else if (kind == 1)
             merge_equal(uv_index, uvs, warps);
-        else
+        else if (kind == 2)
             merge_equal(normal_index, normals);
+        else
+            merge_equal(color_index, colors);
     });
 
     dropped.vertices = count_merged(before, *this);
@@ -175,22 +179,21 @@ CleanMesh::CleanMesh(IndexedMesh mesh) : IndexedMesh(std::move(mesh)) {
             continue;
         }
         dropped.collinear += is_collinear(*this, triangle);
-        position_index[kept] = triangle;
-        if (!uv_index.empty())
-            uv_index[kept] = uv_index[t];
-        if (!normal_index.empty())
-            normal_index[kept] = normal_index[t];
+        for (std::vector<glm::uvec3>* index :
+             {&position_index, &uv_index, &normal_index, &color_index})
+            if (!index->empty())
+                (*index)[kept] = (*index)[t];
         ++kept;
     }
-    position_index.resize(kept);
-    uv_index.resize(uv_index.empty() ? 0 : kept);
-    normal_index.resize(normal_index.empty() ? 0 : kept);
+    for (std::vector<glm::uvec3>* index : {&position_index, &uv_index, &normal_index, &color_index})
+        index->resize(index->empty() ? 0 : kept);
 
     if (dropped.degenerate + dropped.repeated == 0)
         return;
     drop_unused(position_index, positions);
     drop_unused(uv_index, uvs, warps);
     drop_unused(normal_index, normals);
+    drop_unused(color_index, colors);
 }
 
 std::vector<EdgeUse> edge_uses(std::span<const glm::uvec3> triangles) {

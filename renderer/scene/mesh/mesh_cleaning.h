@@ -15,11 +15,11 @@ struct CleaningReport {
     size_t collinear = 0; ///< triangles with three corners on one line, which stay
 };
 
-/// A mesh with equal values merged (positions, UVs with their warps, and normals each; equal means
-/// every coordinate is, with −0 = +0), without values that nobody uses, and without triangles that
-/// make no surface. Slivers with three different corners stay: dropping one would open a hole. Of
-/// two coincident sheets the first stays, since light cannot tell which it meets. Order is
-/// otherwise kept.
+/// A mesh with equal values merged (positions, UVs with their warps, normals, and colours each;
+/// equal means every coordinate is, with −0 = +0), without values that nobody uses, and without
+/// triangles that make no surface. Slivers with three different corners stay: dropping one would
+/// open a hole. Of two coincident sheets the first stays, since light cannot tell which it meets.
+/// Order is otherwise kept.
 class CleanMesh : public IndexedMesh {
   public:
     CleanMesh() = default;

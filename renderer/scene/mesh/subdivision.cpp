@@ -127,15 +127,25 @@ void fill_shape(TriangleMesh& result, const Tessellation& tessellation,
     }
 }
 
-/// The mesh's warps, interpolated over the face to which a vertex belongs.
-glm::dvec3 given_warp(const ControlMesh& control, const Tessellation::Vertex& vertex) {
+/// What the corners are given, interpolated over the face to which a vertex belongs.
+template <class OfCorner>
+auto given(const ControlMesh& control, const Tessellation::Vertex& vertex,
+           const OfCorner& of_corner) {
     const Face& face = control.faces[vertex.face];
     const glm::dvec4 shares = corner_shares(control.kind(face), vertex.parameter);
-    glm::dvec3 warp(0);
-    for (uint32_t i = 0; i < face.size; ++i)
-        warp +=
-            shares[static_cast<int>(i)] * glm::dvec3(control.mesh.warps[control.uv(face.side[i])]);
-    return warp;
+    auto sum = shares[0] * of_corner(face.side[0]);
+    for (uint32_t i = 1; i < face.size; ++i)
+        sum += shares[static_cast<int>(i)] * of_corner(face.side[i]);
+    return sum;
+}
+
+void fill_colors(TriangleMesh& result, const ControlMesh& control,
+                 const Tessellation& tessellation) {
+    result.colors.clear();
+    for (const Tessellation::Vertex& vertex : tessellation.vertices)
+        result.colors.emplace_back(given(control, vertex, [&](uint32_t side) {
+            return glm::dvec4(control.mesh.colors[control.color(side)]);
+        }));
 }
 
 /// UVs and frames. Returns the number of mended frames.
@@ -152,7 +162,11 @@ size_t fill_frames(TriangleMesh& result, const ControlMesh& control,
         const WeftWarp frame =
             control.mesh.warps.empty()
                 ? weft_warp(p.position_s, p.position_t, p.uv_s, p.uv_t, normal)
-                : weft_across(given_warp(control, tessellation.vertices[i]), normal);
+                : weft_across(given(control, tessellation.vertices[i],
+                                    [&](uint32_t side) {
+                                        return glm::dvec3(control.mesh.warps[control.uv(side)]);
+                                    }),
+                              normal);
         result.uvs[i] = p.uv;
         result.weft[i] = frame.weft;
         result.warp[i] = frame.warp;
@@ -231,6 +245,8 @@ TriangleMesh subdivide(const CleanMesh& input, const SubdivisionOptions& options
         counts.quads = mesh.position_index.size() - control.faces.size();
         if (has_uvs)
             counts.frames_repaired = fill_frames(result, control, *tessellation, points);
+        if (!mesh.color_index.empty())
+            fill_colors(result, control, *tessellation);
     }
     if (options.need_uvs && counts.frames_repaired > 0 &&
         counts.frames_repaired == result.positions.size())

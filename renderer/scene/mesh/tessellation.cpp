@@ -11,14 +11,15 @@ constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
 /// The vertices inside one edge, as the first face on it made them.
 struct Edge {
-    uint32_t first = kNone; ///< nearest to the low end
-    uint32_t uv_low = 0, uv_high = 0;
+    uint32_t first = kNone;     ///< nearest to the low end
+    uint64_t low = 0, high = 0; ///< what its ends are given
     uint16_t rate = 1;
 };
 
 /// A vertex that was made for a corner; those of one vertex of the control mesh are chained.
 struct CornerVertex {
-    uint32_t smooth_group, uv, id;
+    uint64_t given;
+    uint32_t smooth_group, id;
     uint32_t previous;
 };
 
@@ -93,20 +94,26 @@ class Tessellator {
         return id;
     }
 
+    /// UV and colour of a corner, in one number.
+    uint64_t given(uint32_t side) const {
+        return uint64_t{control_.color(side)} << 32 | control_.uv(side);
+    }
+
     uint32_t corner(uint32_t side, const glm::vec2& parameter) {
-        const uint32_t group = control_.smooth_group[side], uv = control_.uv(side);
+        const uint32_t group = control_.smooth_group[side];
+        const uint64_t values = given(side);
         uint32_t& last = last_corner_[control_.vertex(side)];
         uint32_t place = kNone, normal = kNone;
         for (uint32_t c = last; c != kNone; c = corners_[c].previous) {
             const CornerVertex& other = corners_[c];
-            if (other.smooth_group == group && other.uv == uv)
+            if (other.smooth_group == group && other.given == values)
                 return other.id;
             place = result_.vertices[other.id].place;
             if (other.smooth_group == group)
                 normal = result_.vertices[other.id].normal;
         }
         const uint32_t id = add_vertex({.side = side, .parameter = parameter}, place, normal);
-        corners_.push_back({group, uv, id, last});
+        corners_.push_back({values, group, id, last});
         last = static_cast<uint32_t>(corners_.size() - 1);
         return id;
     }
@@ -116,13 +123,12 @@ class Tessellator {
         Edge& edge = edges_[edge_of_side_[side]];
         const uint32_t next = next_side(side), rate = edge.rate;
         const bool forward = control_.vertex(side) < control_.vertex(next);
-        const uint32_t uv_low = control_.uv(forward ? side : next);
-        const uint32_t uv_high = control_.uv(forward ? next : side);
+        const uint64_t low = given(forward ? side : next), high = given(forward ? next : side);
         const bool is_new = edge.first == kNone, crease = control_.crease[side] != 0;
-        const bool shared = !is_new && !crease && edge.uv_low == uv_low && edge.uv_high == uv_high;
+        const bool shared = !is_new && !crease && edge.low == low && edge.high == high;
         if (is_new) {
             edge.first = static_cast<uint32_t>(result_.vertices.size());
-            edge.uv_low = uv_low, edge.uv_high = uv_high;
+            edge.low = low, edge.high = high;
         }
         for (uint32_t along = 1; along < rate; ++along) { // from the low end to the high end
             const uint32_t step = forward ? along : rate - along;

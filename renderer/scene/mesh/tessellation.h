@@ -9,8 +9,8 @@
 namespace rapport {
 
 /// How the faces of a control mesh, cut into small triangles, share their vertices: those on a
-/// common side are one, but where the UVs differ on the two sides of a seam, or the normals on the
-/// two sides of a crease, there is one for each.
+/// common side are one, but where the UVs or colours differ on the two sides of a seam, or the
+/// normals on the two sides of a crease, there is one for each.
 struct Tessellation {
     static constexpr uint32_t kInside = std::numeric_limits<uint32_t>::max();
     struct Vertex {

@@ -147,7 +147,10 @@ TriangleMesh refine(const CleanMesh& part, const ShapeContext& context,
     return mesh;
 }
 
-/// A glTF or GLB model, metres, in glTF's axes (+y up); one part per primitive, subdivided.
+/// A glTF or GLB model, metres, in glTF's axes (+y up); one part per primitive, subdivided. Parts
+/// for which the scene states no material are diffuse, in the base colour of their own, with its
+/// picture, the colours of their vertices (COLOR_0), and what the alpha of these cuts out or lets
+/// light through (alphaMode).
 ///     "string filename"   required
 ///     "float edgelength"  edges are cut into pieces that are seen under this many pixels at most,
 ///                         if they stand square to the view; default 4. Out of the picture pieces
