@@ -24,7 +24,8 @@ LoadedScene load_scene(const SceneSource& source, const ClothTables& known,
     SceneDescription description = read_scene(source.path, {1024, 1024});
     description.settings.seed = source.seed;
     loaded.scene = std::make_shared<const Scene>(
-        build_scene(description, {source.cloths, load_table, source.colourways}, loaded.warnings));
+        build_scene(description, {source.cloths, load_table, source.colourways, source.seen_from},
+                    loaded.warnings));
     return loaded;
 }
 

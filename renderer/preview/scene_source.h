@@ -13,6 +13,7 @@ struct SceneSource {
     std::map<std::string, std::filesystem::path> cloths{}; ///< as BuildOptions::cloths
     std::map<std::string, std::string> colourways{};       ///< as BuildOptions::colourways
     uint64_t seed = 0;
+    std::optional<Camera> seen_from{}; ///< as BuildOptions::seen_from
 };
 
 using ClothTables = std::map<std::filesystem::path, std::shared_ptr<const ClothTable>>;

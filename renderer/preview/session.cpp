@@ -102,10 +102,11 @@ void Session::take(Reload reload) {
     for (const auto& [name, choice] : choices_)
         open(choice.file);
     fill_shelf();
-    for (const std::string& warning : loaded.warnings)
-        notes_.push_back("warning: " + warning);
+    if (!refining_) // they were told before
+        for (const std::string& warning : loaded.warnings)
+            notes_.push_back("warning: " + warning);
     redress_ = true;
-    restart();
+    look_anew();
 }
 
 void Session::fill_shelf() {
@@ -129,22 +130,22 @@ void Session::resize(const glm::ivec2& resolution) {
     if (resolution == camera_->camera().resolution || resolution.x < 1 || resolution.y < 1)
         return; // the same, or minimised
     camera_->resize(resolution);
-    restart();
+    look_anew();
 }
 
 void Session::orbit(const glm::vec2& pixels) {
     camera_->orbit(pixels);
-    restart();
+    look_anew();
 }
 
 void Session::pan(const glm::vec2& pixels) {
     camera_->pan(pixels);
-    restart();
+    look_anew();
 }
 
 void Session::zoom(float steps) {
     camera_->zoom(std::pow(kZoomStep, steps));
-    restart();
+    look_anew();
 }
 
 void Session::focus(const glm::vec2& at) {
@@ -152,12 +153,12 @@ void Session::focus(const glm::vec2& at) {
     if (!point)
         return;
     camera_->focus(point->position);
-    restart();
+    look_anew();
 }
 
 void Session::frame_all() {
     camera_->frame(subject_);
-    restart();
+    look_anew();
 }
 
 void Session::open(const std::filesystem::path& file) {
@@ -245,11 +246,49 @@ void Session::read_from(ClothDocument& document, const std::set<std::filesystem:
         watch_.keep(file);
 }
 
+void Session::look_anew() {
+    moved_ = Clock::now();
+    refined_ = false;
+    restart();
+}
+
+bool Session::seen_too_coarsely() const {
+    constexpr int kRays = 32; // along each side of the picture
+    constexpr double kTooLarge = 2;
+    constexpr int kFew = 50; // one in so many may be: the picture's edge has some of them
+    const Sight before(source_.seen_from.value_or(base_->camera)), now(camera());
+    int met = 0, too_large = 0;
+    for (int i = 0; i < kRays * kRays; ++i) {
+        const glm::vec2 place = (glm::vec2(i % kRays, i / kRays) + 0.5f) / float{kRays};
+        const auto point = base_->intersect(camera().ray(glm::vec2(camera().resolution) * place));
+        if (!point || !point->surface->cut_by_sight)
+            continue;
+        const TriangleMesh& mesh = *point->surface->mesh;
+        const glm::uvec3 t = mesh.triangles[point->triangle];
+        const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y];
+        too_large += now.length(a, b) > kTooLarge * before.length(a, b);
+        ++met;
+    }
+    return too_large > met / kFew;
+}
+
+void Session::look_at_surfaces() {
+    constexpr std::chrono::milliseconds kRest{500};
+    if (refined_ || reload_.valid() || Clock::now() - moved_ < kRest)
+        return;
+    refined_ = true;
+    if (!seen_too_coarsely())
+        return;
+    source_.seen_from = camera();
+    start_reload();
+}
+
 void Session::start_reload() {
     ClothTables known;
     for (const auto& [cloth, document] : documents_)
         if (document.table)
             known[cloth] = document.table;
+    refining_ = !scene_changed_;
     scene_changed_ = stop_reload_ = false;
     reload_ = std::async(std::launch::async, [this, source = source_, known = std::move(known)] {
         return load(source, known, {}, [this] { return stop_reload_.load(); });
@@ -262,7 +301,8 @@ void Session::finish_reload() {
     try {
         take(reload_.get());
         scene_error_.clear();
-        notes_.push_back("loaded " + source_.path.string());
+        notes_.push_back(refining_ ? "surfaces cut for this view"
+                                   : "loaded " + source_.path.string());
     } catch (const Stopped&) { // it is loaded anew
     } catch (const std::exception& error) {
         scene_error_ = error.what();
@@ -294,6 +334,7 @@ void Session::take_news() {
 void Session::tick() {
     look_at_files();
     finish_reload();
+    look_at_surfaces();
     take_news();
     if (ready(saving_))
         notes_.push_back(saving_.get());

@@ -109,11 +109,17 @@ class Session {
     /// Has the cloth read again, for `changed`, one of its files, is another now.
     void reread(const std::filesystem::path& file, const std::filesystem::path& changed);
     void read_from(ClothDocument& document, const std::set<std::filesystem::path>& inputs);
+    /// Of what the view shows, whether much is seen larger than it was cut for.
+    bool seen_too_coarsely() const;
+    /// Has surfaces cut anew where the view rests that shows them too coarsely.
+    void look_at_surfaces();
     void start_reload();
     void finish_reload();
     void fill_shelf();
     void show();
     void restart() { stale_ = true; }
+    /// The same for another view.
+    void look_anew();
 
     SceneSource source_;
     std::shared_ptr<const Scene> base_; ///< as it was loaded
@@ -134,6 +140,10 @@ class Session {
     bool stale_ = true;          ///< the picture is of another view
     bool redress_ = false;       ///< and of other cloths or lights
     bool scene_changed_ = false; ///< on the disk, since it was last loaded
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point moved_; ///< the view, for the last time
+    bool refined_ = true;     ///< or the view has moved since it was last looked at how finely
+    bool refining_ = false;   ///< what is being loaded is the same, but cut anew
     std::atomic<bool> stop_reload_ = false;
     std::future<Reload> reload_;
     std::future<std::string> saving_;

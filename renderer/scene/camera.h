@@ -55,4 +55,19 @@ class ViewVolume {
     std::array<glm::dvec4, 5> planes_;
 };
 
+/// How large a camera sees things, for those who make them no finer than that.
+class Sight {
+  public:
+    explicit Sight(const Camera& camera) : camera_(camera), volume_(camera) {}
+    /// Camera::seen_length, or an eighth of it where the picture does not show the segment: what is
+    /// out there casts shadows and is met by scattered light, but its outline is in no picture.
+    double length(const glm::dvec3& a, const glm::dvec3& b) const {
+        return (volume_.may_show(a, b) ? 1.0 : 1.0 / 8) * camera_.seen_length(a, b);
+    }
+
+  private:
+    Camera camera_;
+    ViewVolume volume_;
+};
+
 } // namespace rapport

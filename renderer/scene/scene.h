@@ -36,6 +36,8 @@ struct Surface {
     Rgb emission{0};                             ///< radiance of the face side
     bool two_sided_emission = false;             ///< of the other side too
     std::shared_ptr<const AreaLight> area_light; ///< set by Scene's constructor where it shines
+    /// Its triangles are as small as its makers were told that they are seen (Sight).
+    bool cut_by_sight = false;
     /// What the mesh is only the box of; the material then tells of nothing but the albedo.
     std::optional<PlacedFibres> fibres = std::nullopt;
 };

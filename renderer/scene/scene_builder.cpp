@@ -8,6 +8,7 @@
 #include "renderer/scene/shape/shape.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,10 +18,6 @@
 
 namespace rapport {
 namespace {
-
-/// As how long segments outside of the picture count, of what they would be seen under: what is out
-/// there casts shadows and is met by scattered light, but its outline is in no picture.
-constexpr double kUnseenShare = 1.0 / 8;
 
 using MaterialPointer = std::shared_ptr<const MaterialDescription>;
 
@@ -59,7 +56,8 @@ class Builder {
     Builder(const SceneDescription& description, const BuildOptions& options,
             std::vector<std::string>& warnings)
         : description_(description), options_(options), warnings_(warnings),
-          base_dir_(description.path.parent_path()), view_(description.camera) {
+          base_dir_(description.path.parent_path()),
+          sight_(options.seen_from.value_or(description.camera)) {
         for (const auto& [name, file] : options.cloths)
             overrides_[name] = cloth_material(name, file, colourway_of(name));
         for (const auto& [name, colourway] : options.colourways)
@@ -100,11 +98,11 @@ class Builder {
             const MaterialPointer material = material_for(shape, name);
             return material && material->type == "cloth";
         };
+        std::atomic<bool> cut_by_sight = false;
         const auto seen_length = [&, to_world = glm::dmat4(shape.to_world)](const glm::dvec3& a,
                                                                             const glm::dvec3& b) {
-            const glm::dvec3 from = to_world * glm::dvec4(a, 1), to = to_world * glm::dvec4(b, 1);
-            return (view_.may_show(from, to) ? 1 : kUnseenShare) *
-                   description_.camera.seen_length(from, to);
+            cut_by_sight.store(true, std::memory_order_relaxed);
+            return sight_.length(to_world * glm::dvec4(a, 1), to_world * glm::dvec4(b, 1));
         };
         std::vector<ShapePart> parts = named_in(shape.params, [&] {
             return make_shape(shape.type, {shape.params, base_dir_, needs_uvs, warnings_,
@@ -124,6 +122,7 @@ class Builder {
                 part.base_color.picture = nullptr;
             }
             Surface surface;
+            surface.cut_by_sight = cut_by_sight;
             transform(part.mesh, shape.to_world);
             if (has_far_positions(part.mesh))
                 shape.params.fail("", "positions below 1e18 m", "larger ones");
@@ -342,7 +341,7 @@ class Builder {
     const BuildOptions& options_;
     std::vector<std::string>& warnings_;
     std::filesystem::path base_dir_;
-    ViewVolume view_;
+    Sight sight_;
     std::map<std::string, MaterialPointer> overrides_;
     std::map<const MaterialDescription*, std::shared_ptr<const Bsdf>> materials_;
     std::map<const TextureDescription*, std::shared_ptr<const PictureTexture>> textures_;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,10 @@ struct BuildOptions {
     /// How materials get their tables; see TableLoader.
     LoadTable load_table;
     /// By the same names, the colourways of those cloths; a name without a cloth is a FileError.
-    std::map<std::string, std::string> colourways;
+    std::map<std::string, std::string> colourways{};
+    /// From where surfaces are seen that are cut as finely as that needs; by default the
+    /// description's own.
+    std::optional<Camera> seen_from = std::nullopt;
 };
 
 /// Reads everything that a description names and makes the scene. What was ignored or mended on

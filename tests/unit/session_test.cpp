@@ -281,6 +281,42 @@ TEST(Session, ThePersonsOwnViewStaysUntilTheFileHasAnotherCamera) {
     EXPECT_NE(bare.scene().camera, framed);
 }
 
+TEST(Session, SurfacesAreCutAnewWhereAPersonLooksClosely) {
+    const SquareScene files(SquareScene::Worn::stored);
+    const auto rest = [](Session& session, const std::function<bool()>& done) {
+        const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+        tick_until(session, [&] { return done() || std::chrono::steady_clock::now() > until; });
+        return done();
+    };
+    const auto triangles = [](const Session& session) {
+        return session.scene().surfaces().back().mesh->triangles.size();
+    };
+    std::string text = tests::read_bytes(files.scene());
+    const std::string level = "\"integer level\" 0";
+    tests::write_bytes(files / "by_sight.pbrt", text.replace(text.find(level), level.size(), ""));
+    Session session({files / "by_sight.pbrt"});
+    const size_t before = triangles(session);
+    session.zoom(8);
+    const Camera near = session.camera();
+    tick_until(
+        session, [&] { return !session.notes().empty(); }, 10);
+    EXPECT_EQ(session.notes(), std::vector<std::string>{"surfaces cut for this view"});
+    EXPECT_GT(triangles(session), 2 * before);
+    EXPECT_EQ(session.camera(), near);
+    const size_t close = triangles(session);
+
+    // Not from a little nearer, nor from far away.
+    for (const float steps : {4.0f, -40.0f}) {
+        session.zoom(steps);
+        EXPECT_FALSE(rest(session, [&] { return session.notes().size() > 1; }));
+        EXPECT_EQ(triangles(session), close);
+    }
+    // And not what the scene cuts in its own way.
+    Session stated({files.scene()});
+    stated.zoom(40);
+    EXPECT_FALSE(rest(stated, [&] { return !stated.notes().empty(); }));
+}
+
 TEST(Session, WhatASceneOrAClothIncludesIsReadAgainWhenItChanges) {
     const SquareScene files(SquareScene::Worn::stored);
     const std::string text = tests::read_bytes(files.scene());

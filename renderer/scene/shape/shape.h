@@ -33,7 +33,7 @@ struct ShapeContext {
     std::function<bool(const std::string& material)> needs_uvs;
     std::vector<std::string>& warnings; ///< what was ignored or mended is appended, a line each
     /// Under how many pixels the camera sees the segment between two points of the shape's space
-    /// (Camera::seen_length), or a fraction of that where it is out of the picture.
+    /// (Sight::length).
     std::function<double(const glm::dvec3&, const glm::dvec3&)> seen_length;
     std::shared_ptr<const GltfModel> model; ///< ShapeDescription's
 };
