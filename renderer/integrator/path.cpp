@@ -185,14 +185,14 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, std::optional<Surface
         path.radiance += throughput * emitted_radiance(scene, *point, ray.dir, last);
 
         if (const auto& fibres = point->surface->fibres) {
-            if (depth == scene.settings.max_depth) {
-                path.cut += mean(throughput);
+            const bool scatters = depth < scene.settings.max_depth;
+            CounterRng rng = sampler.stream();
+            const auto passage = scatters ? fibres->follow(point->position, ray.dir, rng)
+                                          : fibres->pass(point->position, ray.dir);
+            if (!passage) {
+                path.cut += scatters ? 0 : mean(throughput);
                 break;
             }
-            CounterRng rng = sampler.stream();
-            const auto passage = fibres->follow(point->position, ray.dir, rng);
-            if (!passage)
-                break;
             if (passage->scattered) {
                 if (first)
                     path.albedo = passage->weight;

@@ -58,6 +58,27 @@ TEST(FibreSwatch, LetsLightSamplesThroughItsGapsAlone) {
     EXPECT_NEAR(mean_green(scene), 1, 5e-3);
 }
 
+TEST(FibreSwatch, ShowsTheSkyThroughItsGapsAtEveryDepth) {
+    // What passes between the fibres is not scattered, so that no limit on that ends it.
+    const Scene scene = [] {
+        std::vector<Surface> surfaces;
+        surfaces.push_back(tests::fibre_surface(swatch(3000)));
+        return Scene(std::move(surfaces), {tests::sky(1)},
+                     tests::parallel_camera({0, 0, 1e-2f}, {}, 5e-4f, 32), tests::settings(64, 0));
+    }();
+    constexpr int kRays = 256;
+    double passed = 0;
+    for (int i = 0; i < kRays * kRays; ++i) {
+        const glm::vec2 place = (glm::vec2(i % kRays, i / kRays) + 0.5f) / float{kRays};
+        const kernel::Ray ray = scene.camera.ray(glm::vec2(scene.camera.resolution) * place);
+        const auto point = scene.intersect(ray);
+        passed += point && point->surface->fibres->pass(point->position, ray.dir);
+    }
+    passed /= kRays * kRays;
+    EXPECT_GT(passed, 0.005);
+    EXPECT_NEAR(mean_green(scene), passed, 5e-3);
+}
+
 TEST(FibreSwatch, LooksTheSameAtEverySizeAndPlace) {
     const auto fibres = swatch(800);
     const auto radiance = [&](const glm::mat4& to_world) {
