@@ -13,8 +13,8 @@
 // edge), triangles, seconds to build the scene, and error of the picture: RMS difference from the
 // finest over the mean, of the pixels that show the model. The model is seen framed whole, and from
 // close up: from a tenth of that distance. All pictures, of 512², have the same random numbers, so
-// that hardly more than their geometry differs; "noise" is what 64 samples a pixel leave for
-// comparison. charts/tessellation.py draws them:
+// that hardly more than their geometry differs; "noise" is what 64 samples a pixel leave, by what
+// two pictures of other random numbers differ by. charts/tessellation.py draws them:
 //
 //   build/tests/tests/tessellation_bench scenes/garments/dress.glb |
 //       python3 tests/bench/charts/tessellation.py
@@ -22,7 +22,7 @@
 namespace rapport {
 namespace {
 
-constexpr int kSamples = 16;
+constexpr int kSamples = 16, kNoiseSamples = 64;
 
 struct View {
     const char* name;
@@ -52,10 +52,10 @@ std::shared_ptr<const TableBsdf> satin() {
     return std::make_shared<const TableBsdf>(tests::synthetic_table(intensity, 0.0), "satin.bsdf");
 }
 
-struct Measured {
-    Image image;
-    size_t triangles = 0;
-    double seconds = 0;
+struct Built {
+    Scene scene;
+    size_t triangles;
+    double seconds;
 };
 
 /// Moves the camera towards what it sees in the middle of the frame, to `share` of the distance.
@@ -71,12 +71,11 @@ void approach(Camera& camera, const GltfModel& model, float share) {
     camera.to_world[3] = glm::vec4(eye + (1 - share) * nearest * forward, 1);
 }
 
-Measured picture(const std::filesystem::path& model, const View& view, const std::string& parameter,
-                 double value) {
+Built build(const std::filesystem::path& model, const View& view, const std::string& parameter,
+            double value) {
     SceneDescription scene = describe_model(model, {512, 512});
     if (view.distance < 1)
         approach(scene.camera, *scene.shapes.back().model, view.distance);
-    scene.settings.samples = kSamples;
     scene.settings.max_depth = 1;
     scene.shapes.back().params.add(
         number(parameter == "level" ? "integer" : "float", parameter, {value}));
@@ -87,23 +86,27 @@ Measured picture(const std::filesystem::path& model, const View& view, const std
 
     std::vector<std::string> warnings;
     const auto start = std::chrono::steady_clock::now();
-    const Scene built = build_scene(scene, options, warnings);
-    Measured result;
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    for (const Surface& surface : built.surfaces()) // the lamp has two
-        result.triangles += surface.mesh->triangles.size();
-    result.image = render(built).image();
-    return result;
+    Built built{build_scene(scene, options, warnings), 0, 0};
+    built.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    for (const Surface& surface : built.scene.surfaces()) // the lamp has two
+        built.triangles += surface.mesh->triangles.size();
+    return built;
 }
 
-/// √(mean of `square_of(pixel)`) over the mean of `image`, of the pixels that show something.
-template <class Square> double relative_rms(const Image& image, const Square& square_of) {
+Image picture(Scene& scene, int samples, uint64_t seed) {
+    scene.settings.samples = samples;
+    scene.settings.seed = seed;
+    return render(scene).image();
+}
+
+/// RMS difference of two pictures over the mean of the first, of the pixels where that shows
+/// something.
+double difference(const Image& image, const Image& other) {
     double squares = 0, sum = 0, count = 0;
-    const auto &green = *image.find("G"), &depth = *image.find("Z");
+    const auto &green = *image.find("G"), &depth = *image.find("Z"), &found = *other.find("G");
     for (size_t i = 0; i < green.size(); ++i)
         if (depth[i] > 0) {
-            squares += square_of(i);
+            squares += square(double{found[i]} - double{green[i]});
             sum += green[i];
             ++count;
         }
@@ -121,19 +124,17 @@ int main(int count, char** arguments) {
             const std::filesystem::path model = arguments[i];
             const std::string name = model.stem().string() + ", " + view.name;
             const auto& [finest, finest_value] = view.finest;
-            const Image reference = picture(model, view, finest, finest_value).image;
-            const auto& truth = *reference.find("G");
-            const auto& variance = *reference.find("variance.G");
-            std::printf(
-                "\"%s\",noise,0,0,0,%.6f\n", name.c_str(),
-                relative_rms(reference, [&](size_t i) { return variance[i] * kSamples / 64; }));
+            Scene reference = build(model, view, finest, finest_value).scene;
+            const Image truth = picture(reference, kSamples, 0);
+            std::printf("\"%s\",noise,0,0,0,%.6f\n", name.c_str(),
+                        difference(picture(reference, kNoiseSamples, 1),
+                                   picture(reference, kNoiseSamples, 2)) /
+                            std::sqrt(2.0));
             const auto row = [&](const std::string& parameter, double value) {
-                const Measured made = picture(model, view, parameter, value);
+                Built made = build(model, view, parameter, value);
                 std::printf("\"%s\",%s,%g,%zu,%.4f,%.6f\n", name.c_str(), parameter.c_str(), value,
-                            made.triangles, made.seconds, relative_rms(reference, [&](size_t i) {
-                                return square(double{(*made.image.find("G"))[i]} -
-                                              double{truth[i]});
-                            }));
+                            made.triangles, made.seconds,
+                            difference(truth, picture(made.scene, kSamples, 0)));
                 std::fflush(stdout);
             };
             for (const double level : {0, 1, 2, 3, 4, 6, 8, 12})
