@@ -1,7 +1,7 @@
 #include "renderer/core/math.h"
 #include "renderer/integrator/path_tracer.h"
-#include "renderer/scene/model_scene.h"
 #include "renderer/scene/scene_builder.h"
+#include "renderer/scene/scene_file.h"
 #include "tests/bench/fitted_sampler.h"
 #include "tests/support/small_scenes.h"
 #include "tests/support/temporary_folder.h"
@@ -10,22 +10,24 @@
 #include <ctime>
 #include <glm/gtc/matrix_transform.hpp>
 
-// What sampling from the table buys over sampling from lobes that are fitted to it: lines of cloth,
-// sky, sampler, samples a pixel, seconds of processor time, and the mean, the variance and the
-// relative variance of the pixels' means, of a model under a sky, over the pixels that it fills:
-// what is seen of the sky itself is as noisy with either. Runs of the two samplers alternate, each
-// with random numbers of its own. charts/sampling.py draws them:
+// What sampling from the table buys over sampling from lobes that are fitted to it: lines of scene,
+// cloth, sky, sampler, samples a pixel, seconds of processor time, and the mean, the variance and
+// the relative variance of the pixels' means, of a scene under a sky, over the pixels that it
+// fills: what is seen of the sky itself is as noisy with either. Runs of the two samplers
+// alternate, each with random numbers of its own. charts/sampling.py draws them:
 //
-//   build/tests/tests/sampling_bench scenes/garments/dress.glb TABLE.bsdf... SKY.exr... |
-//       python3 tests/bench/charts/sampling.py
+//   build/tests/tests/sampling_bench scenes/garments/dress.glb ../shared/bench/sheet.pbrt
+//       TABLE.bsdf... SKY.exr... | python3 tests/bench/charts/sampling.py
 //
-// The skies are latitude–longitude pictures in linear RGB.
+// Scenes are models, of which the part named Body wears the cloth, or .pbrt files with +z up, all
+// of which does. The skies are latitude–longitude pictures in linear RGB.
 
 namespace rapport {
 namespace {
 
 constexpr int kRounds = 3;
-constexpr const char* kCloth = "Body"; // the part of the model that wears the cloth
+constexpr const char* kCloth = "Body";
+constexpr glm::ivec2 kPicture{96, 96};
 
 /// A copy without the negative values that compression leaves in pictures, which lights refuse.
 std::filesystem::path without_negatives(const std::filesystem::path& sky,
@@ -38,9 +40,13 @@ std::filesystem::path without_negatives(const std::filesystem::path& sky,
     return folder / "sky.exr";
 }
 
-SceneDescription under_sky(const std::filesystem::path& model, const std::filesystem::path& sky) {
-    SceneDescription scene = describe_model(model, {96, 96});
-    scene.shapes.erase(scene.shapes.begin()); // the lamp
+bool is_model(const std::filesystem::path& scene) { return scene.extension() == ".glb"; }
+
+SceneDescription under_sky(const std::filesystem::path& path, const std::filesystem::path& sky) {
+    SceneDescription scene = read_scene(path, kPicture);
+    scene.camera.resolution = kPicture;
+    if (is_model(path))
+        scene.shapes.erase(scene.shapes.begin()); // the lamp
     Param filename;
     filename.type = "string";
     filename.name = "filename";
@@ -48,15 +54,16 @@ SceneDescription under_sky(const std::filesystem::path& model, const std::filesy
     Params params("sampling_bench", "the sky", 0);
     params.add(filename);
     // Skies are +z up, models +y.
-    scene.lights = {
-        {"infinite", params, glm::rotate(glm::mat4(1), radians(-90.0f), glm::vec3(1, 0, 0))}};
+    scene.lights = {{"infinite", params,
+                     is_model(path) ? glm::rotate(glm::mat4(1), radians(-90.0f), glm::vec3(1, 0, 0))
+                                    : glm::mat4(1)}};
     return scene;
 }
 
-Scene worn(const Scene& scene, const std::shared_ptr<const Bsdf>& material) {
+Scene worn(const Scene& scene, bool whole, const std::shared_ptr<const Bsdf>& material) {
     std::vector<Surface> surfaces = scene.surfaces();
     for (Surface& surface : surfaces)
-        if (surface.description && surface.description->name == kCloth)
+        if (whole || (surface.description && surface.description->name == kCloth))
             surface.material = material;
     return {scene, std::move(surfaces), scene.lights()};
 }
@@ -93,17 +100,18 @@ Noise noise_of_model(const Image& one, const Image& other) {
     return {noise.mean / count, noise.variance / count, noise.relative / count};
 }
 
-void compare_samplers(const std::filesystem::path& model, const std::filesystem::path& cloth,
+void compare_samplers(const std::filesystem::path& path, const std::filesystem::path& cloth,
                       const std::filesystem::path& sky) {
     const auto table =
         std::make_shared<const TableBsdf>(read_table(cloth), cloth.filename().string());
     BuildOptions options;
-    options.cloths[kCloth] = cloth;
+    if (is_model(path))
+        options.cloths[kCloth] = cloth;
     options.load_table = [&](const auto&, const auto&) { return table; };
     std::vector<std::string> warnings;
     const tests::TemporaryFolder folder;
     const Scene built =
-        build_scene(under_sky(model, without_negatives(sky, folder)), options, warnings);
+        build_scene(under_sky(path, without_negatives(sky, folder)), options, warnings);
     const auto by_table = tests::cloth_of(table);
     const auto by_lobes = std::make_shared<const tests::FittedSampler>(by_table);
     std::fprintf(stderr, "%s: %s\n", cloth.filename().c_str(), by_lobes->describe().c_str());
@@ -114,7 +122,7 @@ void compare_samplers(const std::filesystem::path& model, const std::filesystem:
             for (const auto& [name, material] :
                  {std::pair<const char*, std::shared_ptr<const Bsdf>>("table", by_table),
                   {"lobes", by_lobes}}) {
-                Scene scene = worn(built, material);
+                Scene scene = worn(built, !is_model(path), material);
                 scene.settings.samples = samples;
                 const auto rendered = [&] {
                     scene.settings.seed = ++seed;
@@ -124,9 +132,9 @@ void compare_samplers(const std::filesystem::path& model, const std::filesystem:
                 const Image one = rendered(), other = rendered();
                 const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC / 2;
                 const Noise noise = noise_of_model(one, other);
-                std::printf("%s,%s,%s,%d,%.4f,%.6g,%.6g,%.6g\n", cloth.stem().c_str(),
-                            sky.stem().c_str(), name, samples, seconds, noise.mean, noise.variance,
-                            noise.relative);
+                std::printf("%s,%s,%s,%s,%d,%.4f,%.6g,%.6g,%.6g\n", path.stem().c_str(),
+                            cloth.stem().c_str(), sky.stem().c_str(), name, samples, seconds,
+                            noise.mean, noise.variance, noise.relative);
                 std::fflush(stdout);
             }
 }
@@ -136,20 +144,24 @@ void compare_samplers(const std::filesystem::path& model, const std::filesystem:
 
 int main(int count, char** arguments) {
     if (count < 4) {
-        std::fputs("usage: sampling_bench MODEL.glb TABLE.bsdf... SKY.exr...\n", stderr);
+        std::fputs("usage: sampling_bench SCENE.glb|pbrt... TABLE.bsdf... SKY.exr...\n", stderr);
         return 2;
     }
-    std::vector<std::filesystem::path> tables, skies;
-    for (int i = 2; i < count; ++i) {
+    std::vector<std::filesystem::path> scenes, tables, skies;
+    for (int i = 1; i < count; ++i) {
         const std::filesystem::path file = arguments[i];
         if (!std::filesystem::exists(file)) { // skies are no part of the checkout
             std::fprintf(stderr, "%s: not there, left out\n", file.c_str());
             continue;
         }
-        (file.extension() == ".exr" ? skies : tables).push_back(file);
+        (file.extension() == ".exr"    ? skies
+         : file.extension() == ".bsdf" ? tables
+                                       : scenes)
+            .push_back(file);
     }
-    std::puts("cloth,sky,sampler,samples,seconds,mean,variance,relative");
-    for (const auto& table : tables)
-        for (const auto& sky : skies)
-            rapport::compare_samplers(arguments[1], table, sky);
+    std::puts("scene,cloth,sky,sampler,samples,seconds,mean,variance,relative");
+    for (const auto& scene : scenes)
+        for (const auto& table : tables)
+            for (const auto& sky : skies)
+                rapport::compare_samplers(scene, table, sky);
 }
