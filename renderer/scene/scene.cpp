@@ -13,6 +13,9 @@ template <class T>
 T interpolate(const std::vector<T>& values, const glm::uvec3& t, const glm::vec2& b) {
     return (1 - b.x - b.y) * values[t.x] + b.x * values[t.y] + b.y * values[t.z];
 }
+template <class T> T interpolate(const std::vector<T>& values, const SurfacePoint& point) {
+    return interpolate(values, point.surface->mesh->triangles[point.triangle], point.barycentric);
+}
 
 } // namespace
 
@@ -151,21 +154,13 @@ SurfacePoint Scene::surface_point(const kernel::Hit& hit) const {
     return point;
 }
 
-namespace {
-
-template <class T> T at(const SurfacePoint& point, const std::vector<T>& values) {
-    return interpolate(values, point.surface->mesh->triangles[point.triangle], point.barycentric);
-}
-
-} // namespace
-
 Rgb SurfacePoint::reflectance() const {
     const Print& print = surface->print;
     Rgb share(1);
     if (print.picture)
-        share = (*print.picture)(at(*this, surface->mesh->uvs));
+        share = (*print.picture)(interpolate(surface->mesh->uvs, *this));
     if (print.vertex_colors)
-        share *= Rgb(at(*this, surface->mesh->colors));
+        share *= Rgb(interpolate(surface->mesh->colors, *this));
     return share;
 }
 
@@ -175,9 +170,9 @@ float SurfacePoint::opacity() const {
         return 1;
     float share = print.opacity->factor;
     if (print.picture)
-        share *= print.picture->alpha(at(*this, surface->mesh->uvs));
+        share *= print.picture->alpha(interpolate(surface->mesh->uvs, *this));
     if (print.vertex_colors)
-        share *= at(*this, surface->mesh->colors).a;
+        share *= interpolate(surface->mesh->colors, *this).a;
     if (print.opacity->cutoff)
         return share >= *print.opacity->cutoff ? 1 : 0;
     return share;

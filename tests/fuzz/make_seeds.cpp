@@ -56,6 +56,17 @@ void gltf_seeds(const std::filesystem::path& folder) {
     file.json["meshes"][0]["primitives"][0]["indices"] = sparse;
     file.json["meshes"][0]["primitives"][0]["mode"] = 5;
     write_bytes(folder / "sparse.glb", file.glb());
+    auto& primitive = file.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["COLOR_0"] = file.add_accessor(file.add_view(std::string(16, '\x80')),
+                                                           kUnsignedByte, 4, "VEC4", 0, true);
+    primitive["targets"] = {
+        {{"COLOR_0", file.add_array(std::vector<float>(12, 0.25f), kFloat, "VEC3")}}};
+    file.json["meshes"][0]["weights"] = {0.5};
+    file.json["materials"] = {{{"alphaMode", "MASK"},
+                               {"alphaCutoff", 0.3},
+                               {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}}}};
+    write_bytes(folder / "coloured.glb", file.glb());
+    write_bytes(folder / "coloured.gltf", file.embedded());
 }
 
 void scene_seeds(const std::filesystem::path& folder) {
