@@ -209,7 +209,7 @@ PathResult trace_path(const Scene& scene, kernel::Ray ray, std::optional<Surface
         const Frame frame = point->frame_towards(-ray.dir);
         const glm::vec3 eye = frame.to_local(-ray.dir);
         const Bsdf& material = *point->surface->material;
-        const float opacity = point->opacity();
+        const float opacity = point->opacity;
         const Rgb reflectance = opacity * point->reflectance();
         const bool scatters = depth < scene.settings.max_depth;
         const auto [let_through, albedo] = material.shares(eye);

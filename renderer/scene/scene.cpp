@@ -17,6 +17,20 @@ template <class T> T interpolate(const std::vector<T>& values, const SurfacePoin
     return interpolate(values, point.surface->mesh->triangles[point.triangle], point.barycentric);
 }
 
+float opacity_at(const SurfacePoint& point) {
+    const Print& print = point.surface->print;
+    if (!print.opacity)
+        return 1;
+    float share = print.opacity->factor;
+    if (print.picture)
+        share *= print.picture->alpha(interpolate(point.surface->mesh->uvs, point));
+    if (print.vertex_colors)
+        share *= interpolate(point.surface->mesh->colors, point).a;
+    if (print.opacity->cutoff)
+        return share >= *print.opacity->cutoff ? 1 : 0;
+    return share;
+}
+
 } // namespace
 
 Scene::Scene(std::vector<Surface> surfaces, std::vector<std::shared_ptr<Light>> lights,
@@ -123,7 +137,7 @@ std::optional<SurfacePoint> Scene::past_holes(const kernel::Ray& ray,
     SurfacePoint point = surface_point(*hit);
     kernel::Ray rest = ray;
     float gone = 0;
-    for (int layer = 0; layer < kMaxLayers && point.opacity() == 0; ++layer) {
+    for (int layer = 0; layer < kMaxLayers && point.opacity == 0; ++layer) {
         const glm::vec3 origin = offset_origin(point, ray.dir);
         const float step = glm::dot(origin - rest.org, ray.dir);
         rest = {origin, ray.dir, 0, rest.tfar - step};
@@ -151,6 +165,7 @@ SurfacePoint Scene::surface_point(const kernel::Hit& hit) const {
     point.barycentric = {hit.u, hit.v};
     point.distance = hit.t;
     point.reach = std::max({largest_coordinate(a), largest_coordinate(b), largest_coordinate(c)});
+    point.opacity = opacity_at(point);
     return point;
 }
 
@@ -161,20 +176,6 @@ Rgb SurfacePoint::reflectance() const {
         share = (*print.picture)(interpolate(surface->mesh->uvs, *this));
     if (print.vertex_colors)
         share *= Rgb(interpolate(surface->mesh->colors, *this));
-    return share;
-}
-
-float SurfacePoint::opacity() const {
-    const Print& print = surface->print;
-    if (!print.opacity)
-        return 1;
-    float share = print.opacity->factor;
-    if (print.picture)
-        share *= print.picture->alpha(interpolate(surface->mesh->uvs, *this));
-    if (print.vertex_colors)
-        share *= interpolate(surface->mesh->colors, *this).a;
-    if (print.opacity->cutoff)
-        return share >= *print.opacity->cutoff ? 1 : 0;
     return share;
 }
 
@@ -212,10 +213,9 @@ Rgb Scene::transmittance(const glm::vec3& from, const glm::vec3& direction, floa
             ray.tfar = distance - glm::dot(ray.org - from, direction);
             continue;
         }
-        const float opacity = point->opacity();
-        passed *= 1 - opacity +
-                  opacity * point->surface->material->unscattered(
-                                point->frame_towards(-direction).to_local(-direction));
+        passed *= 1 - point->opacity +
+                  point->opacity * point->surface->material->unscattered(
+                                       point->frame_towards(-direction).to_local(-direction));
         if (passed == Rgb(0))
             return passed;
         ray.org = offset_origin(*point, direction);

@@ -56,12 +56,12 @@ struct SurfacePoint {
     glm::vec2 barycentric; ///< weights of its 2nd and 3rd vertex
     float distance;        ///< along the ray, whose direction is of unit length
     float reach;           ///< largest coordinate of the triangle: the scale of the rounding errors
+    float opacity;         ///< how much of the surface is there: 1 but for its print
 
     /// The shading frame, or, where the eye sees by the geometry one side and by the shading normal
     /// the other, as on silhouettes, the frame of the geometric normal.
     Frame frame_towards(const glm::vec3& eye) const;
     Rgb reflectance() const; ///< what the surface's print multiplies scattered light by
-    float opacity() const;   ///< how much of the surface is there: 1 but for its print
 };
 
 /// A scene, constant after construction.

@@ -11,8 +11,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 // What sampling from the table buys over sampling from lobes that are fitted to it: lines of scene,
-// cloth, sky, sampler, samples a pixel, seconds of processor time, and the mean, the variance and
-// the relative variance of the pixels' means, of a scene under a sky, over the pixels that it
+// cloth, sky, sampler, samples a pixel, seconds of processor time, and the mean and the variance
+// of the pixels' means, of a scene under a sky, over the pixels that it
 // fills: what is seen of the sky itself is as noisy with either. Runs of the two samplers
 // alternate, each with random numbers of its own. charts/sampling.py draws them:
 //
@@ -71,7 +71,6 @@ Scene worn(const Scene& scene, bool whole, const std::shared_ptr<const Bsdf>& ma
 struct Noise {
     double mean = 0;     ///< of the pixels' means
     double variance = 0; ///< of a pixel's mean
-    double relative = 0; ///< the same over the squared mean of the pixel, plus 0.01
 };
 
 /// In the mean over channels and the pixels that are filled, from what two pictures differ by:
@@ -89,15 +88,12 @@ Noise noise_of_model(const Image& one, const Image& other) {
             continue;
         for (const std::string channel : {"R", "G", "B"}) {
             const double a = plane(channel)[i], b = (*other.find(channel))[i];
-            const double mean = 0.5 * (a + b), variance = 0.5 * square(a - b);
-            noise.mean += mean;
-            noise.variance += variance;
-            noise.relative += variance / (square(mean) + 0.01);
+            noise.mean += 0.5 * (a + b);
+            noise.variance += 0.5 * square(a - b);
             ++values;
         }
     }
-    const auto count = double(values);
-    return {noise.mean / count, noise.variance / count, noise.relative / count};
+    return {noise.mean / double(values), noise.variance / double(values)};
 }
 
 void compare_samplers(const std::filesystem::path& path, const std::filesystem::path& cloth,
@@ -132,9 +128,9 @@ void compare_samplers(const std::filesystem::path& path, const std::filesystem::
                 const Image one = rendered(), other = rendered();
                 const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC / 2;
                 const Noise noise = noise_of_model(one, other);
-                std::printf("%s,%s,%s,%s,%d,%.4f,%.6g,%.6g,%.6g\n", path.stem().c_str(),
+                std::printf("%s,%s,%s,%s,%d,%.4f,%.6g,%.6g\n", path.stem().c_str(),
                             cloth.stem().c_str(), sky.stem().c_str(), name, samples, seconds,
-                            noise.mean, noise.variance, noise.relative);
+                            noise.mean, noise.variance);
                 std::fflush(stdout);
             }
 }
@@ -159,7 +155,7 @@ int main(int count, char** arguments) {
                                        : scenes)
             .push_back(file);
     }
-    std::puts("scene,cloth,sky,sampler,samples,seconds,mean,variance,relative");
+    std::puts("scene,cloth,sky,sampler,samples,seconds,mean,variance");
     for (const auto& scene : scenes)
         for (const auto& table : tables)
             for (const auto& sky : skies)

@@ -225,7 +225,7 @@ TEST(Opacity, BlendsWithWhatIsBehind) {
     attributes(all)["COLOR_0"] = all.add_array(
         std::vector<float>{1, 1, 1, 0.5f, 1, 1, 1, 0.5f, 1, 1, 1, 0.5f, 1, 1, 1, 0.5f}, kFloat,
         "VEC4");
-    EXPECT_NEAR(seen_at(scene_of(all), 0.5f, 0.5f)->opacity(), 0.8f * 128 / 255 * 0.5f, kTolerance);
+    EXPECT_NEAR(seen_at(scene_of(all), 0.5f, 0.5f)->opacity, 0.8f * 128 / 255 * 0.5f, kTolerance);
 }
 
 TEST(Opacity, MistakesAreNamed) {

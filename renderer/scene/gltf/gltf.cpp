@@ -164,8 +164,7 @@ class ModelReader {
             n = length > 0 && std::isfinite(length) ? glm::vec3(normal / length) : glm::vec3(0);
         }
         if (turned)
-            for (auto* index :
-                 {&mesh.position_index, &mesh.uv_index, &mesh.normal_index, &mesh.color_index})
+            for (std::vector<glm::uvec3>* index : mesh.indices())
                 for (glm::uvec3& triangle : *index)
                     std::swap(triangle.y, triangle.z);
         return mesh;

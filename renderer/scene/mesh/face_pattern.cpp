@@ -1,6 +1,7 @@
 #include "renderer/scene/mesh/face_pattern.h"
 
 #include <algorithm>
+#include <numeric>
 #include <opensubdiv/bfr/tessellation.h>
 
 namespace rapport {
@@ -14,22 +15,21 @@ Bfr::Parameterization parametrisation(FaceKind kind) {
     return {kind == FaceKind::triangle ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK, size_of(kind)};
 }
 
-/// A triangle whose side after corner `base` is one piece: its two other sides, of `rates` pieces,
-/// laced together up to the corner where they meet. `points` are those of its boundary.
-std::vector<glm::uvec3> laced(uint32_t base, const FacePatterns::Rates& rates, size_t points) {
-    const uint32_t count = static_cast<uint32_t>(points);
-    uint32_t begin = 0; // of the side that is one piece
-    for (uint32_t i = 0; i < base; ++i)
-        begin += static_cast<uint32_t>(rates[i]);
-    const auto right = static_cast<uint64_t>(rates[(base + 1) % 3]);
-    const auto left = static_cast<uint64_t>(rates[(base + 2) % 3]);
+/// A triangle whose side after corner `base` is one piece: its two other sides laced together up to
+/// the corner where they meet.
+std::vector<glm::uvec3> laced(int base, const FacePatterns::Rates& rates) {
+    const int64_t right = rates[static_cast<size_t>((base + 1) % 3)];
+    const int64_t left = rates[static_cast<size_t>((base + 2) % 3)], count = 1 + right + left;
+    const int64_t begin = std::accumulate(rates.begin(), rates.begin() + base, int64_t{0});
+    const auto round = [&](int64_t point) {
+        return static_cast<uint32_t>((point + count) % count);
+    };
     std::vector<glm::uvec3> triangles;
-    uint64_t i = 0, j = 0; // pieces that are laced of either
+    int64_t i = 0, j = 0; // pieces that are laced of the right side and of the left
     while (i + j + 1 < right + left) {
-        const auto a = static_cast<uint32_t>((begin + count - j) % count);
-        const auto b = static_cast<uint32_t>((begin + 1 + i) % count);
+        const int64_t a = begin - j, b = begin + 1 + i;
         const bool up_right = j + 1 == left || (i + 1 < right && (i + 1) * left <= (j + 1) * right);
-        triangles.emplace_back(a, b, up_right ? (b + 1) % count : (a + count - 1) % count);
+        triangles.emplace_back(round(a), round(b), round(up_right ? b + 1 : a - 1));
         ++(up_right ? i : j);
     }
     return triangles;
@@ -38,16 +38,17 @@ std::vector<glm::uvec3> laced(uint32_t base, const FacePatterns::Rates& rates, s
 FacePattern make_pattern(FaceKind kind, const FacePatterns::Rates& rates) {
     const Bfr::Tessellation cut(parametrisation(kind), size_of(kind), rates.data());
     FacePattern pattern;
+    if (const auto base = std::ranges::find(rates, 1) - rates.begin();
+        size_of(kind) == 3 && base < 3) {
+        // Bfr would cut its inside as finely as its long sides also across.
+        pattern.points.resize(static_cast<size_t>(cut.GetNumBoundaryCoords()));
+        cut.GetBoundaryCoords(&pattern.points[0].x);
+        pattern.triangles = laced(static_cast<int>(base), rates);
+        return pattern;
+    }
     pattern.points.resize(static_cast<size_t>(cut.GetNumCoords()));
     pattern.triangles.resize(static_cast<size_t>(cut.GetNumFacets()));
     cut.GetCoords(&pattern.points[0].x);
-    const auto base = std::ranges::find(rates, 1) - rates.begin();
-    if (size_of(kind) == 3 && base < 3) {
-        // Bfr would cut its inside as finely as its long sides also across.
-        pattern.points.resize(static_cast<size_t>(rates[0] + rates[1] + rates[2]));
-        pattern.triangles = laced(static_cast<uint32_t>(base), rates, pattern.points.size());
-        return pattern;
-    }
     std::vector<int> corners(3 * pattern.triangles.size());
     cut.GetFacets(corners.data());
     for (size_t t = 0; t < pattern.triangles.size(); ++t)

@@ -2,6 +2,7 @@
 
 #include "renderer/core/math.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -35,6 +36,10 @@ struct IndexedMesh {
     std::vector<glm::uvec3> uv_index;       ///< per triangle; empty when there are no UVs
     std::vector<glm::uvec3> normal_index;   ///< per triangle; empty when there are no normals
     std::vector<glm::uvec3> color_index;    ///< per triangle; empty when there are no colours
+
+    std::array<std::vector<glm::uvec3>*, 4> indices() {
+        return {&position_index, &uv_index, &normal_index, &color_index};
+    }
 };
 
 } // namespace rapport

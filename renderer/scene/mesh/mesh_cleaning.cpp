@@ -179,13 +179,12 @@ CleanMesh::CleanMesh(IndexedMesh mesh) : IndexedMesh(std::move(mesh)) {
             continue;
         }
         dropped.collinear += is_collinear(*this, triangle);
-        for (std::vector<glm::uvec3>* index :
-             {&position_index, &uv_index, &normal_index, &color_index})
+        for (std::vector<glm::uvec3>* index : indices())
             if (!index->empty())
                 (*index)[kept] = (*index)[t];
         ++kept;
     }
-    for (std::vector<glm::uvec3>* index : {&position_index, &uv_index, &normal_index, &color_index})
+    for (std::vector<glm::uvec3>* index : indices())
         index->resize(index->empty() ? 0 : kept);
 
     if (dropped.degenerate + dropped.repeated == 0)
